@@ -23,7 +23,7 @@ struct ExportArguments {
   bool allow_missing = false, verify = false;
 };
 
-constexpr const char* kVerifiable = "inp";
+bool IsVerifiable(const ExportFormat& format) { return format.name.starts_with("inp"); }
 
 void RefuseMissing(const Counterparts& counterparts, const ExportFormat& format) {
   const Counterparts missing = Missing(counterparts);
@@ -68,8 +68,8 @@ int Verify(const DescribedRun& run, const std::filesystem::path& output) {
 
 int Export(ExportArguments arguments) {
   const ExportFormat& format = FindExportFormat(arguments.format);
-  if (arguments.verify && format.name != kVerifiable)
-    throw InputError("--verify runs CalculiX and belongs to --to inp");
+  if (arguments.verify && !IsVerifiable(format))
+    throw InputError("--verify runs CalculiX and belongs to --to inp and --to inp_lumped");
   arguments.described.with_positions = arguments.verify && HasCalculix();
   const DescribedRun run = DescribeRun(arguments.run, arguments.described);
   const Counterparts counterparts = format.counterparts(run.model);
@@ -112,7 +112,7 @@ void AddExport(CLI::App* app, std::function<int()>* command) {
                      "Leave out what has no counterpart in the format");
   exported->add_flag("--verify", arguments->verify,
                      "Run CalculiX on the file, where it is installed, and print how much its "
-                     "displacements differ; only for inp");
+                     "displacements differ; only for inp and inp_lumped");
   exported->callback([=] { *command = [=] { return Export(*arguments); }; });
 }
 

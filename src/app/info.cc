@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "calibration/calibration_run.h"
 #include "core/error.h"
+#include "experiment/scatter_findings.h"
 #include "geometry/mesh_io.h"
 #include "geometry/surface_check.h"
 #include "meshing/tet_quality.h"
@@ -18,7 +19,6 @@
 #include "report/calibration_report.h"
 #include "report/diagnosis_report.h"
 #include "scan/recording.h"
-#include "scan/recording_check.h"
 
 namespace lacuna {
 namespace {
@@ -83,13 +83,15 @@ void DescribeRun(const std::filesystem::path& folder) {
 void ShowRecording(const Recording& recording) {
   constexpr int64_t kMostPoints = 5'000'000;  // what is read within seconds
   fmt::print("{}", DescribeRecording(recording));
-  std::vector<std::string> findings;
+  ExaminedRecording examined;
   try {
-    findings = ExamineFrames(recording, kMostPoints);
+    examined = ExamineRecording(recording, {}, kMostPoints);
   } catch (const InputError& problem) {
-    findings = {problem.what()};
+    examined.findings = {problem.what()};
   }
-  for (const std::string& finding : findings) fmt::print("  {:<12} {}\n", "warning", finding);
+  if (!examined.scatter.empty()) fmt::print("  {:<12} {}\n", "scatter", examined.scatter);
+  for (const std::string& finding : examined.findings)
+    fmt::print("  {:<12} {}\n", "warning", finding);
 }
 
 int Info(const std::filesystem::path& path) {

@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "calibration/calibration_problem.h"
 #include "experiment/reference_body.h"
+#include "experiment/scatter_findings.h"
 #include "experiment/scene.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study.h"
@@ -15,7 +16,6 @@
 #include "prediction/recorded_motion.h"
 #include "reconstruction/reconstruction_study.h"
 #include "scan/recording.h"
-#include "scan/recording_check.h"
 
 namespace lacuna {
 namespace {
@@ -29,12 +29,22 @@ void PrintWarnings(const std::vector<std::string>& warnings, const std::string& 
   }
 }
 
+void PrintExamined(const ExaminedRecording& examined, const std::string& of = "") {
+  PrintWarnings(examined.findings, of);
+  if (!examined.scatter.empty()) fmt::print("scatter: {}{}\n", of, examined.scatter);
+}
+
+StatedNoise NoiseOf(const PredictionStudy& study, const PredictedRecording& item) {
+  if (item.scans != nullptr) return {study.scan.noise, "scan.noise", study.scan.filter.voxel_size};
+  return {study.noise_is_estimated ? 0 : study.noise, "noise"};
+}
+
 int Validate(const std::filesystem::path& path, bool show) {
   nlohmann::json resolved;
   if (std::filesystem::is_directory(path) || path.filename() == "recording.yaml") {
     const Recording recording = LoadRecording(path);
     PrintWarnings(recording.warnings);
-    PrintWarnings(ExamineFrames(recording));
+    PrintExamined(ExamineRecording(recording));
     fmt::print("{}: a valid recording of {} frames\n", path.string(), recording.FrameCount());
     resolved = nlohmann::json::parse(recording.resolved);
   } else {
@@ -46,7 +56,8 @@ int Validate(const std::filesystem::path& path, bool show) {
       const PredictionStudy study = ReadPredictionStudy(config);
       PrintWarnings(StudyWarnings(study));
       for (const PredictedRecording& item : study.recordings)
-        PrintWarnings(ExamineFrames(item.recording, kMostPoints), item.name + ": ");
+        PrintExamined(ExamineRecording(item.recording, NoiseOf(study, item), kMostPoints),
+                      item.name + ": ");
       if (study.density != study.recordings.front().recording.object.density)
         PrintWarnings({DoubtOfDensity(study.density)});
       const ReferenceBody body = MakeReferenceBody(study);
@@ -59,7 +70,9 @@ int Validate(const std::filesystem::path& path, bool show) {
     } else {
       const ReconstructionStudy study = ReadReconstruction(config);
       PrintWarnings(study.recording.warnings);
-      PrintWarnings(ExamineFrames(study.recording, kMostPoints));
+      PrintExamined(ExamineRecording(study.recording,
+                                     {study.follow.noise, "fit.noise", study.filter.voxel_size},
+                                     kMostPoints));
       if (study.density != study.recording.object.density)
         PrintWarnings({DoubtOfDensity(study.density)});
       fmt::print("{}: a valid experiment on {} frames of \"{}\"\n", path.string(),

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibration/adaptive_time_step.h"
+#include "calibration/data_shares.h"
 #include "calibration/known_errors.h"
 #include "calibration/misfit_report.h"
 #include "calibration/prior_conflicts.h"
@@ -23,16 +24,17 @@ namespace {
 
 // Incremented whenever a change of the code changes the result of the stage, or its files.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 26;
+constexpr int kCalibrationVersion = 27;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
 std::vector<HeldParameter> HeldIn(const PredictionStudy& study) {
-  std::vector<HeldParameter> held{{"density", "kg/m^3", {study.density}}};
+  std::vector<HeldParameter> held;
+  if (study.density_deviation == 0) held.push_back({"density", "kg/m^3", {study.density}});
   std::vector<ModelParameter> others = ModelParameters(study.effects);
   std::erase_if(others, [&](const ModelParameter& parameter) {
     return std::any_of(study.fitted.begin(), study.fitted.end(), [&](const ModelParameter& fitted) {
-      return fitted.prior.name == parameter.prior.name;
+      return fitted.places.front() == parameter.places.front();
     });
   });
   for (size_t k = 0; k < others.size(); ++k) {
@@ -107,8 +109,9 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   stage.misfit = MisfitTable(problem, misfits);
   stage.reactions = ReactionTable(problem, misfits, /*torques=*/false);
   stage.torques = ReactionTable(problem, misfits, /*torques=*/true);
-  const std::vector<double> shares = SharesOfForces(problem, calibration.parameters);
-  for (size_t k = 0; k < shares.size(); ++k) record.parameters[k].share_of_forces = shares[k];
+  const std::vector<std::optional<DataShares>> shares =
+      SharesOfData(problem, calibration.parameters);
+  for (size_t k = 0; k < shares.size(); ++k) record.parameters[k].shares = shares[k];
   progress->End();
   if (calibration.rms <= kFarFromTruth) {
     progress->Begin("errors of the model", 0);

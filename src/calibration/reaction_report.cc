@@ -1,10 +1,8 @@
 #include "calibration/reaction_report.h"
 
-#include <algorithm>
 #include <iterator>
 #include <limits>
 
-#include "calibration/linear_misfit.h"
 #include "geometry/rigid_fit.h"
 
 namespace lacuna {
@@ -61,10 +59,11 @@ CsvTable ReactionTable(const CalibrationProblem& problem,
     for (size_t k = 0; k < misfit.reactions.size(); ++k) {
       const MeasuredReaction& reading = model.Reactions()[k];
       if (reading.is_torque != torques) continue;
+      const double late = delay + model.CellDelay(k, misfits[r].nuisance);
       for (size_t f = 0; f < misfit.frames.size(); ++f) {
         const double time = times[misfit.frames[f]];
         const Eigen::VectorXd moved = reading.directions.transpose() *
-                                      RelativeMotion(model.model(), reading.held, time - delay,
+                                      RelativeMotion(model.model(), reading.held, time - late,
                                                      torques ? GripRotation : GripDisplacement);
         for (int c = 0; c < reading.Components(); ++c) {
           const size_t row = f * static_cast<size_t>(reading.Components()) + static_cast<size_t>(c);
@@ -92,28 +91,6 @@ CsvTable ReactionTable(const CalibrationProblem& problem,
         {names[n], Eigen::Map<Eigen::VectorXd>(columns[n].data(),
                                                static_cast<Eigen::Index>(columns[n].size()))});
   return table;
-}
-
-std::vector<double> SharesOfForces(const CalibrationProblem& problem,
-                                   const Eigen::VectorXd& values) {
-  const auto& models = problem.models();
-  if (std::none_of(models.begin(), models.end(), [](const RecordingModel& model) {
-        return model.item().fitted && !model.Reactions().empty();
-      }))
-    return {};
-  const LinearisedMisfit misfit = problem.Linearise(values, true);
-  if (!misfit.usable) return {};
-  const Eigen::MatrixXd squares =
-      WhitenedRows(misfit.jacobian, misfit, 0, /*fitted_only=*/true).cwiseAbs2();
-  Eigen::RowVectorXd of_forces = Eigen::RowVectorXd::Zero(squares.cols());
-  for (const LinearisedMisfit::Part& part : misfit.parts)
-    if (!part.IsOfPoints())
-      of_forces += squares.middleRows(part.first_row, part.layout.Rows()).colwise().sum();
-  const Eigen::RowVectorXd all = squares.colwise().sum();
-  std::vector<double> shares;
-  for (Eigen::Index k = 0; k < all.size(); ++k)
-    shares.push_back(all[k] > 0 ? of_forces[k] / all[k] : 0);
-  return shares;
 }
 
 }  // namespace lacuna

@@ -1,4 +1,4 @@
-// The details of measured reactions that a run keeps, and how much these readings determine.
+// The details of measured reactions that a run keeps.
 #ifndef LACUNA_CALIBRATION_REACTION_REPORT_H_
 #define LACUNA_CALIBRATION_REACTION_REPORT_H_
 
@@ -14,18 +14,14 @@ namespace lacuna {
 // The table reactions.csv of forces: for each component of each reading in each frame of each
 // recording, the mean displacement of the grip along the component relative to the other grips (m),
 // the reading, with the sign of the force that the grip exerts, and the difference predicted −
-// measured without the tare (N). Both forces are NaN in frames that the reading does not cover.
-// Empty where no force is measured.
+// measured without the tare (N). Displacement and prediction are those at the time of the reading,
+// which the delays of the clock and of the load cell shift. Both forces are NaN in frames that the
+// reading does not cover. Empty where no force is measured.
 //
 // `torques`: the table torques.csv instead, with the grip's rotation about the component (rad) and
 // torques (N m).
 CsvTable ReactionTable(const CalibrationProblem& problem,
                        const std::vector<RecordingMisfit>& misfits, bool torques);
-
-// FittedParameter::share_of_forces for each parameter of the problem; empty where no fitted
-// recording has a reading or the model cannot be linearised. Throws Interrupted.
-std::vector<double> SharesOfForces(const CalibrationProblem& problem,
-                                   const Eigen::VectorXd& values);
 
 }  // namespace lacuna
 

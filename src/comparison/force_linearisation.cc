@@ -132,9 +132,10 @@ LinearisedForce ForceLinearisation::Linearise(const ReplayedMotion& motion,
     for (Eigen::Index k = 0; k < nuisances; ++k) {
       const MisfitDirection& direction = recording_.nuisances()[static_cast<size_t>(k)].direction;
       auto column = jacobian.col(forces + k).segment<3>(row);
-      if (direction.kind == MisfitDirection::Kind::kModel ||
-          direction.kind == MisfitDirection::Kind::kCellDelay)
-        continue;  // not of the markers
+      // The columns of the hold are filled above. The delay of a load cell does not change the
+      // markers. The placement of a grip stays as fitted: moving a grip changes the motion as
+      // forces do.
+      if (direction.IsSimulated() || direction.kind == MisfitDirection::Kind::kCellDelay) continue;
       if (direction.kind != MisfitDirection::Kind::kClock)
         column = recording_.ByRegistration(direction, motion.registration,
                                            motion.predicted.col(frame).segment<3>(3 * m));

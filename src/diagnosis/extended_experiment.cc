@@ -8,8 +8,10 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/quoted_text.h"
 #include "diagnosis/model_change.h"
 #include "effects/effect_text.h"
+#include "effects/uniform_density.h"
 
 namespace lacuna {
 namespace {
@@ -24,7 +26,7 @@ std::string Written(const Effect& effect, const std::filesystem::path& experimen
 std::string FittedEntry(const ModelParameter& parameter) {
   const CalibratedParameter& prior = parameter.prior;
   const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
-  std::string entry = fmt::format("    - {{name: {}", prior.name);
+  std::string entry = fmt::format("    - {{name: {}", QuotedText(prior.name));
   if (std::isfinite(prior.min)) entry += fmt::format(", min: {}{}", prior.min, unit);
   if (std::isfinite(prior.max)) entry += fmt::format(", max: {}{}", prior.max, unit);
   if (std::isfinite(prior.prior_mean))
@@ -60,10 +62,11 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
       effect.candidate.replaces_material
           ? " in place of " + fitted.study.effects.front()->Card().type
           : "",
-      fitted.study.name, experiment.lexically_proximate(parent).generic_string(), name, name,
-      Written(*study.effects.front(), experiment));
+      fitted.study.name, QuotedText(experiment.lexically_proximate(parent).generic_string()),
+      QuotedText(name), QuotedText(name), Written(*study.effects.front(), experiment));
   for (size_t k = 1; k < study.effects.size(); ++k)
-    text += fmt::format("  - {}\n", Written(*study.effects[k], experiment));
+    if (!IsUniformDensity(*study.effects[k]))
+      text += fmt::format("  - {}\n", Written(*study.effects[k], experiment));
   std::vector<std::string> candidates;  // still to be tried
   for (const OwnLaw& law : study.candidates)
     if (law.name != effect.candidate.type) candidates.push_back(Written(*law.effect, experiment));
@@ -72,7 +75,8 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
   const double explained = fitted.study.explained_misfit + 2 * std::max(0.0, effect.score.evidence);
   if (explained > 0) text += fmt::format("explained_misfit: {:.6g}\n", explained);
   text += "fit:\n  parameters:\n";
-  for (const ModelParameter& parameter : study.fitted) text += FittedEntry(parameter);
+  for (const ModelParameter& parameter : study.fitted)
+    if (!IsDensity(parameter, study.effects)) text += FittedEntry(parameter);
   const std::filesystem::path file = parent / (name + ".yaml");
   WriteFileAtomically(file, text);
   return file;

@@ -6,23 +6,17 @@
 #include <algorithm>
 #include <utility>
 
+#include "prediction/grip_placement.h"
+
 namespace lacuna {
 namespace {
 
 struct GripNodes {
-  Eigen::VectorXi nodes;
+  Grip grip;
+  Eigen::Matrix3Xd places;  // of its nodes at rest, m
   Eigen::Vector3d centre;
   Eigen::Vector3d held;  // 1 along the axes along which the grip holds its nodes, else 0
 };
-
-Eigen::VectorXd RigidMotion(const GripNodes& grip, const Eigen::Matrix3Xd& rest,
-                            const Eigen::Vector3d& shift, const Eigen::Vector3d& rotation) {
-  Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * rest.cols());
-  for (const int node : grip.nodes)
-    motion.segment<3>(3 * node) =
-        grip.held.cwiseProduct(shift + rotation.cross(rest.col(node) - grip.centre));
-  return motion;
-}
 
 MisfitDirection ConstantMotion(Eigen::VectorXd motion) {
   MisfitDirection direction;
@@ -40,14 +34,15 @@ MisfitDirection YieldingMotion(const GripNodes& grip, const Eigen::Matrix3Xd& re
   direction.perturbation.grip = [grip, rest, turns, largest = std::move(largest)](
                                     double, const Eigen::VectorXd& reaction) {
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
-    for (const int node : grip.nodes) {
+    for (const int node : grip.grip.nodes) {
       const Eigen::Vector3d here = grip.held.cwiseProduct(reaction.segment<3>(3 * node));
       force += here;
       moment += (rest.col(node) - grip.centre).cross(here);
     }
     const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
     const Eigen::VectorXd motion =
-        turns ? RigidMotion(grip, rest, zero, -moment) : RigidMotion(grip, rest, -force, zero);
+        RigidGripMotion(grip.grip, grip.places, turns ? zero : Eigen::Vector3d(-force),
+                        turns ? Eigen::Vector3d(-moment) : zero, rest.cols());
     largest->Add(turns ? moment.norm() : force.norm());
     return motion;
   };
@@ -56,7 +51,7 @@ MisfitDirection YieldingMotion(const GripNodes& grip, const Eigen::Matrix3Xd& re
 
 MisfitDirection StrainMotion(const GripNodes& grip, const Eigen::Matrix3Xd& rest, int entry) {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * rest.cols());
-  for (const int node : grip.nodes)
+  for (const int node : grip.grip.nodes)
     motion[3 * node + entry % 3] =
         grip.held[entry % 3] * (rest(entry / 3, node) - grip.centre[entry / 3]);
   return ConstantMotion(std::move(motion));
@@ -79,10 +74,10 @@ GripMotions MakeGripMotions(const CalibrationProblem& problem) {
   std::vector<MisfitDirection>& directions = motions.directions;
   const auto next = [&] { return static_cast<Eigen::Index>(directions.size()); };
   for (size_t g = 0; g < model.grips.size(); ++g) {
-    GripNodes nodes{model.grips[g].nodes, zero, zero};
+    if (model.grips[g].nodes.size() == 0) continue;
+    GripNodes nodes{model.grips[g], rest(Eigen::all, model.grips[g].nodes), zero, zero};
+    nodes.centre = nodes.places.rowwise().mean();
     for (int axis = 0; axis < 3; ++axis) nodes.held[axis] = model.grips[g].axes.Has(axis);
-    if (nodes.nodes.size() == 0) continue;
-    nodes.centre = rest(Eigen::all, nodes.nodes).rowwise().mean();
     GripMotions::Grip& grip = motions.grips.emplace_back();
     grip.grip = g;
     grip.label = model.grips.size() > 1 ? fmt::format("grip {}", g + 1) : "the grip";
@@ -91,8 +86,8 @@ GripMotions MakeGripMotions(const CalibrationProblem& problem) {
     grip.rigid = next();
     for (int axis = 0; axis < 6; ++axis) {
       const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis % 3);
-      directions.push_back(ConstantMotion(axis < 3 ? RigidMotion(nodes, rest, unit, zero)
-                                                   : RigidMotion(nodes, rest, zero, unit)));
+      directions.push_back(ConstantMotion(RigidGripMotion(
+          nodes.grip, nodes.places, axis < 3 ? unit : zero, axis < 3 ? zero : unit, rest.cols())));
     }
     grip.yielding = next();
     directions.push_back(YieldingMotion(nodes, rest, /*turns=*/false, grip.force));

@@ -118,8 +118,9 @@ void AddBody(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
   std::vector<double> times;
   for (const int frame : recording.item().frames)
     times.push_back(recording.item().recording.times[frame] - recording.Delay(nuisance));
+  const Model placed = recording.PlacedModel(nuisance);
   const PredictionSummary summary = Predict(
-      model, recording.Options(nuisance), times, {}, [&](int frame, const PredictedState& state) {
+      placed, recording.Options(nuisance), times, {}, [&](int frame, const PredictedState& state) {
         for (size_t k = 0; k < nodes.size(); ++k) {
           for (const int point : near[k]) {
             const auto displacement = displacements.col(frame * points + point);

@@ -1,66 +1,20 @@
 #include "exchange/calculix.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <glog/logging.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
-#include <optional>
 #include <sstream>
-#include <string_view>
 
 #include "core/atomic_file.h"
-#include "core/error.h"
-#include "core/spawn_attributes.h"
+#include "core/run_program.h"
 #include "core/text_file.h"
 #include "exchange/inp_writer.h"
 
 namespace lacuna {
 namespace {
-
-std::optional<std::filesystem::path> FindProgram(const std::string& name) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    std::filesystem::path program = std::filesystem::path(folder) / name;
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(program, ignored) && access(program.c_str(), X_OK) == 0)
-      return program;
-  }
-  return std::nullopt;
-}
-
-// Runs `ccx -i model` in `folder`, with its output in model.log, and returns its exit status.
-int Run(const std::filesystem::path& program, const std::filesystem::path& folder) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "model.log",
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  std::string name = "ccx", option = "-i", job = "model", threads = "OMP_NUM_THREADS=1";
-  char* arguments[] = {name.data(), option.data(), job.data(), nullptr};
-  std::vector<char*> environment{threads.data()};
-  for (char** entry = environ; *entry != nullptr; ++entry)
-    if (!std::string_view(*entry).starts_with("OMP_NUM_THREADS=")) environment.push_back(*entry);
-  environment.push_back(nullptr);
-  const SpawnAttributes attributes;
-  pid_t child = 0;
-  const int error = posix_spawn(&child, program.c_str(), &actions, attributes.Get(), arguments,
-                                environment.data());
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw InputError(fmt::format("ccx could not be started: {}", strerror(error)));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
 
 // The lines of the log from the first error on, at most six.
 std::string ErrorsIn(const std::string& log) {
@@ -120,8 +74,14 @@ CalculixResult RunCalculix(const std::filesystem::path& inp, const std::filesyst
   WriteFileAtomically(folder / "model.inp", ReadWholeFile(inp));
   std::error_code ignored;
   std::filesystem::remove(folder / "model.dat", ignored);
-  const int status = Run(*program, folder);
-  const std::string log = ReadWholeFile(folder / "model.log");
+  const std::filesystem::path log_file = std::filesystem::absolute(folder) / "model.log";
+  const int status = RunProgram({.program = *program,
+                                 .arguments = {"-i", "model"},
+                                 .folder = folder,
+                                 .output = log_file,
+                                 .with_errors = true,
+                                 .environment = {"OMP_NUM_THREADS=1"}});
+  const std::string log = ReadWholeFile(log_file);
   if (status != 0 || log.find("Job finished") == std::string::npos)
     return {Status::kFailed, "ccx stopped: " + ErrorsIn(log), {}};
   size_t read = 0;

@@ -24,7 +24,7 @@ bool HasCalculix();
 // Runs `ccx` on one core on a copy of `inp` in `folder`, which is created and keeps all files that
 // ccx writes. The file is one of InpText(…, kCalculix) with `nodes` nodes and these frames (s).
 // kAbsent: there is no ccx. kFailed: it stopped early, and `message` quotes its errors. Throws
-// InputError where files cannot be written.
+// InputError where files cannot be written, and Interrupted after it has ended ccx.
 CalculixResult RunCalculix(const std::filesystem::path& inp, const std::filesystem::path& folder,
                            Eigen::Index nodes, const std::vector<double>& frames);
 

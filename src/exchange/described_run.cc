@@ -53,15 +53,15 @@ std::vector<PortableParameter> ParametersOf(const CalibrationRecord& record) {
   return parameters;
 }
 
-void PredictPositions(const RecordingModel& model, const PredictionOptions& options,
+void PredictPositions(const Model& model, const PredictionOptions& options,
                       DescribedRun* described) {
   std::vector<double> times;
   for (const double frame : described->model.frames)
     times.push_back(described->model.start + frame);
-  const Eigen::Index size = 3 * model.model().body->NodeCount();
+  const Eigen::Index size = 3 * model.body->NodeCount();
   described->positions.resize(size, static_cast<Eigen::Index>(times.size()) + 1);
   const PredictionSummary summary =
-      Predict(model.model(), options, times, {}, [&](int index, const PredictedState& state) {
+      Predict(model, options, times, {}, [&](int index, const PredictedState& state) {
         described->positions.col(index + 1) = state.position;
       });
   if (!summary.IsUsable())
@@ -82,16 +82,16 @@ DescribedRun DescribeRun(const std::filesystem::path& run, const DescribedRunOpt
   for (const int frame : item.frames)
     if (item.recording.times[static_cast<size_t>(frame)] <= options.until)
       frames.push_back(item.recording.times[static_cast<size_t>(frame)] - model.Delay(nuisance));
+  const Model placed = model.PlacedModel(nuisance);
   const PredictionOptions prediction = model.Options(nuisance);
   DescribedRun described{
-      DescribeModel(model.model(), fitted.mesh, prediction, frames, NamesOf(item, fitted.mesh)),
-      {}};
+      DescribeModel(placed, fitted.mesh, prediction, frames, NamesOf(item, fitted.mesh)), {}};
   described.model.run = fitted.study.name;
   described.model.experiment = fitted.study.file.filename().string();
   described.model.recording = item.name;
   described.model.program_version = ProgramVersion();
   described.model.parameters = ParametersOf(fitted.record);
-  if (options.with_positions) PredictPositions(model, prediction, &described);
+  if (options.with_positions) PredictPositions(placed, prediction, &described);
   return described;
 }
 

@@ -17,6 +17,15 @@
 namespace lacuna {
 namespace {
 
+template <InpDialect kDialect>
+ExportFormat InpFormat(const char* name, const char* program) {
+  return {name, program,
+          [](const PortableModel& model) { return InpCounterparts(model, kDialect); },
+          [](const PortableModel& model) {
+            return FileTexts{{"model.inp", InpText(model, kDialect)}};
+          }};
+}
+
 FileTexts GmshFiles(const PortableModel& model, GmshVersion version) {
   return {{"model.msh", GmshText(model.mesh, version) + GmshRegions(model)},
           {"model.json", ModelJson(model, "model.msh").dump(1) + "\n"}};
@@ -30,16 +39,9 @@ std::string LinearMesh(const PortableModel& model, GmshVersion version) {
 
 const std::vector<ExportFormat>& ExportFormats() {
   static const std::vector<ExportFormat> formats{
-      {"inp", "CalculiX",
-       [](const PortableModel& model) { return InpCounterparts(model, InpDialect::kCalculix); },
-       [](const PortableModel& model) {
-         return FileTexts{{"model.inp", InpText(model, InpDialect::kCalculix)}};
-       }},
-      {"abaqus", "Abaqus",
-       [](const PortableModel& model) { return InpCounterparts(model, InpDialect::kAbaqus); },
-       [](const PortableModel& model) {
-         return FileTexts{{"model.inp", InpText(model, InpDialect::kAbaqus)}};
-       }},
+      InpFormat<InpDialect::kCalculix>("inp", "CalculiX"),
+      InpFormat<InpDialect::kCalculixPointMasses>("inp_lumped", "CalculiX, lumped masses"),
+      InpFormat<InpDialect::kAbaqus>("abaqus", "Abaqus"),
       {"feb", "FEBio 4", FebCounterparts,
        [](const PortableModel& model) {
          return FileTexts{{"model.feb", FebText(model)}};

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
+#include <algorithm>
+
 #include "fem/lame_constants.h"
 
 namespace lacuna {
@@ -14,7 +16,7 @@ using How = Counterpart::Kind;
 double BulkModulus(const LameConstants& lame) { return lame.lambda + 2 * lame.mu / 3; }
 
 Counterpart ElasticityCounterpart(const PortableEffect& law, InpDialect dialect) {
-  const bool is_calculix = dialect == InpDialect::kCalculix;
+  const bool is_calculix = dialect != InpDialect::kAbaqus;
   switch (law.kind) {
     case Kind::kLinear:
       return {law.name, How::kExact, "*ELASTIC, in steps without NLGEOM"};
@@ -39,11 +41,21 @@ Counterpart ElasticityCounterpart(const PortableEffect& law, InpDialect dialect)
   }
 }
 
+bool HasMovingGrip(const PortableModel& model) {
+  return std::any_of(model.grips.begin(), model.grips.end(),
+                     [](const PortableGrip& grip) { return !grip.displacements.empty(); });
+}
+
 Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel& model,
                               InpDialect dialect) {
   switch (effect.kind) {
     case Kind::kGravity:
-      return {effect.name, How::kExact, "*DLOAD, GRAV"};
+      if (dialect == InpDialect::kCalculixPointMasses)
+        return {effect.name, How::kExact, "*CLOAD, the weights of the nodes"};
+      if (model.mesh.Order() == 1) return {effect.name, How::kExact, "*DLOAD, GRAV"};
+      return {effect.name, How::kConverted,
+              "*DLOAD, GRAV: weights of the elements, consistently distributed, in place of the "
+              "weights of lumped masses"};
     case Kind::kMassDamping:
       return {effect.name, How::kExact, "*DAMPING, ALPHA"};
     case Kind::kStiffnessDamping:
@@ -53,11 +65,15 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
             "its Poisson's ratio is not that of the material, so that it is not proportional to "
             "the stiffness"};
       return {effect.name, How::kConverted,
-              "*DAMPING, BETA = beta E_damping/E: beta times the tangent stiffness in place of "
-              "stiffness at rest on the rate of the Green-Lagrange strain; they agree for small "
-              "strains"};
+              std::string("*DAMPING, BETA = beta E_damping/E: beta times the tangent stiffness in "
+                          "place of stiffness at rest on the rate of the Green-Lagrange strain; "
+                          "they agree for small strains and slow rotations") +
+                  (dialect != InpDialect::kAbaqus && HasMovingGrip(model)
+                       ? ". CalculiX leaves the velocity of nodes with a prescribed motion out of "
+                         "the damping force, so that a moving grip brakes the body beside it"
+                       : "")};
     case Kind::kViscoelasticBranch:
-      if (dialect == InpDialect::kCalculix)
+      if (dialect != InpDialect::kAbaqus)
         return {effect.name, How::kNone,
                 "CalculiX has no linear viscoelasticity; the format abaqus has *VISCOELASTIC"};
       return {effect.name, How::kConverted,
@@ -120,8 +136,14 @@ Counterparts InpCounterparts(const PortableModel& model, InpDialect dialect) {
   if (!model.is_static)
     parts.push_back(
         {"inertia", How::kConverted,
-         "the masses of the elements (consistent, or as the program chooses) in place of "
-         "lumped ones; *DYNAMIC in place of Lacuna's time scheme"});
+         dialect == InpDialect::kCalculixPointMasses
+             ? "lumped masses as *MASS, elements with a billionth of the density; *DYNAMIC in "
+               "place of Lacuna's time scheme"
+             : "the masses of the elements (consistent, or as the program chooses) in place of "
+               "lumped ones; *DYNAMIC in place of Lacuna's time scheme"});
+  else if (dialect == InpDialect::kCalculixPointMasses)
+    parts.push_back({"density", How::kConverted,
+                     "*MASS at the nodes; *DENSITY is a billionth of the material's"});
   return parts;
 }
 
@@ -135,7 +157,11 @@ std::string InpMaterial(const PortableModel& model, InpDialect dialect) {
       dialect == InpDialect::kAbaqus && model.Find(Kind::kViscoelasticBranch) != nullptr;
   AppendElasticity(model, has_branches, &text);
   if (has_branches) AppendBranches(model, &text);
-  text += fmt::format("*DENSITY\n{}\n", InpNumber(model.density));
+  // CalculiX wants elements with a mass; this one is below the rounding of its results.
+  constexpr double kAlmostNone = 1e-9;
+  const bool has_point_masses = dialect == InpDialect::kCalculixPointMasses;
+  text += fmt::format("*DENSITY\n{}\n",
+                      InpNumber(has_point_masses ? kAlmostNone * model.density : model.density));
   const RayleighDamping damping = model.Damping();
   if (damping.alpha > 0 || damping.beta > 0)
     text += fmt::format("*DAMPING, ALPHA={}, BETA={}\n", InpNumber(damping.alpha),

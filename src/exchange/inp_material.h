@@ -14,7 +14,10 @@
 //    J = 1 + d and F:F − 3 = 2d + O(ε²), J^(−2/3) F:F − 3 = (F:F − 3) − 2d + d²/3 + O(ε³), so that
 //    the coefficient of d² is μ/6 + K/2 = (λ + μ)/2, as in ψ. Both are the same where J = 1.
 //  * Rayleigh damping: α M is that of mass damping; β C on the rate of the Green–Lagrange strain is
-//    β K for small strains. Its moduli must be proportional to those of the material.
+//    β K for small strains and slow rotations: where a part rotates at ω, K v contains ω × f of its
+//    elastic forces f. Its moduli must be proportional to those of the material. CalculiX
+//    multiplies K with the velocities of the free nodes only: those with a prescribed motion count
+//    as if they were at rest.
 //  * Branches m, ν_b, τ of a Prony series (Abaqus only): g = μ_b/(μ + Σμ_b), k = K_b/(K + ΣK_b).
 #ifndef LACUNA_EXCHANGE_INP_MATERIAL_H_
 #define LACUNA_EXCHANGE_INP_MATERIAL_H_
@@ -25,7 +28,13 @@
 
 namespace lacuna {
 
-enum class InpDialect { kCalculix, kAbaqus };
+enum class InpDialect {
+  kCalculix,
+  // For CalculiX, whose implicit dynamics has no lumped masses of elements: the masses of
+  // PortableModel::node_mass as point masses, and elements almost without mass.
+  kCalculixPointMasses,
+  kAbaqus
+};
 
 // A number of at most 20 characters, which both programs read, with 13 significant digits.
 std::string InpNumber(double value);

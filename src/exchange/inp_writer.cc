@@ -41,6 +41,15 @@ void AppendMesh(const TetMesh& mesh, std::string* text) {
   }
 }
 
+// The lumped mass of each node as an element of its own.
+void AppendPointMasses(const PortableModel& model, std::string* text) {
+  const auto end = std::back_inserter(*text);
+  for (Eigen::Index n = 0; n < model.node_mass.size(); ++n)
+    fmt::format_to(end,
+                   "*ELEMENT, TYPE=MASS, ELSET=MASS_{0}\n{1}, {0}\n*MASS, ELSET=MASS_{0}\n{2}\n",
+                   n + 1, model.mesh.TetCount() + n + 1, InpNumber(model.node_mass[n]));
+}
+
 void AppendSet(const std::string& name, const std::vector<int>& nodes, std::string* text) {
   constexpr size_t kPerLine = 12;
   fmt::format_to(std::back_inserter(*text), "*NSET, NSET={}\n", name);
@@ -63,7 +72,7 @@ void AppendAmplitude(const std::string& name, const std::vector<double>& times,
 
 // What stands before the steps, and in each of them.
 struct Sections {
-  std::string amplitudes, fixed, moved, start_loads, loads;
+  std::string amplitudes, fixed, moved, start_loads, constant_loads, loads;
 };
 
 void AddGrip(const PortableGrip& grip, const std::string& set, const PortableModel& model,
@@ -98,10 +107,12 @@ void AddGrip(const PortableGrip& grip, const std::string& set, const PortableMod
 // All loads at one component of a node: CalculiX does not accept two amplitudes there.
 struct NodalLoad {
   std::vector<std::pair<size_t, double>> shares;  // of which loads
+  double constant = 0;                            // N, beside these loads
   double start = 0;                               // N, at the start, with the hold
 };
 
-void AddLoads(const PortableModel& model, Sections* sections) {
+// `weights` are forces on the nodes at all times, 3 × n, N, or empty.
+void AddLoads(const PortableModel& model, const Eigen::Matrix3Xd& weights, Sections* sections) {
   std::map<std::pair<int, int>, NodalLoad> loads;  // by node and axis
   for (size_t l = 0; l < model.loads.size(); ++l)
     for (int axis = 0; axis < 3; ++axis) {
@@ -114,6 +125,13 @@ void AddLoads(const PortableModel& model, Sections* sections) {
         nodal.start += share * load.force(axis, 0);
       }
     }
+  for (Eigen::Index node = 0; node < weights.cols(); ++node)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (weights(axis, node) == 0) continue;
+      NodalLoad& nodal = loads[{static_cast<int>(node), axis}];
+      nodal.constant = weights(axis, node);
+      nodal.start += weights(axis, node);
+    }
   for (Eigen::Index node = 0; node < model.held_force.cols(); ++node)
     for (int axis = 0; axis < 3; ++axis)
       if (model.held_force(axis, node) != 0)
@@ -124,8 +142,13 @@ void AddLoads(const PortableModel& model, Sections* sections) {
     const auto [node, axis] = place;
     sections->start_loads +=
         fmt::format("{}, {}, {}\n", node + 1, axis + 1, InpNumber(nodal.start));
-    if (nodal.shares.empty()) continue;
-    const bool is_single = nodal.shares.size() == 1;
+    if (nodal.shares.empty()) {
+      if (nodal.constant != 0)
+        sections->constant_loads +=
+            fmt::format("{}, {}, {}\n", node + 1, axis + 1, InpNumber(nodal.constant));
+      continue;
+    }
+    const bool is_single = nodal.shares.size() == 1 && nodal.constant == 0;
     const std::string name = is_single
                                  ? fmt::format("F_{}_{}", nodal.shares[0].first + 1, kAxes[axis])
                                  : fmt::format("F_NODE_{}_{}", node + 1, kAxes[axis]);
@@ -133,7 +156,8 @@ void AddLoads(const PortableModel& model, Sections* sections) {
     lines[name] += fmt::format("{}, {}, {}\n", node + 1, axis + 1,
                                InpNumber(is_single ? nodal.shares[0].second : 1));
     if (!is_new) continue;
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.times.size()));
+    Eigen::VectorXd values =
+        Eigen::VectorXd::Constant(static_cast<Eigen::Index>(model.times.size()), nodal.constant);
     for (const auto& [l, share] : nodal.shares)
       values += (is_single ? 1 : share) * model.loads[l].force.row(axis).transpose();
     AppendAmplitude(name, model.times, values, &sections->amplitudes);
@@ -162,7 +186,8 @@ std::string Steps(const PortableModel& model, const Sections& sections, InpDiale
   text += IsGeometricallyNonlinear(model) ? "0.25, 1., 1e-6, 0.5\n" : "1., 1.\n";
   text += sections.moved;
   for (const PortableEffect& effect : model.effects)
-    if (effect.kind == PortableEffect::Kind::kGravity && effect.values.norm() > 0) {
+    if (dialect != InpDialect::kCalculixPointMasses &&
+        effect.kind == PortableEffect::Kind::kGravity && effect.values.norm() > 0) {
       const Eigen::Vector3d direction = effect.values.normalized();
       text +=
           fmt::format("*DLOAD\nBODY, GRAV, {}, {}, {}, {}\n", InpNumber(effect.values.norm()),
@@ -180,7 +205,8 @@ std::string Steps(const PortableModel& model, const Sections& sections, InpDiale
   text += fmt::format(
       "{0}, {1}, {2}, {3}\n", InpNumber(std::min(model.time_step, model.Duration())),
       InpNumber(model.Duration()), InpNumber(1e-4 * model.time_step), InpNumber(model.time_step));
-  if (!sections.start_loads.empty()) text += "*CLOAD, OP=NEW\n" + sections.loads;
+  if (!sections.start_loads.empty())
+    text += "*CLOAD, OP=NEW\n" + sections.constant_loads + sections.loads;
   return text + Output(false, dialect) + "*END STEP\n";
 }
 
@@ -212,6 +238,8 @@ std::string InpText(const PortableModel& model, InpDialect dialect) {
   std::string text = fmt::format("*HEADING\nlacuna {}\n", CommentText(model.run.substr(0, 60)));
   text += FileComment(model, InpCounterparts(model, dialect), "** ");
   AppendMesh(model.mesh, &text);
+  const bool has_point_masses = dialect == InpDialect::kCalculixPointMasses;
+  if (has_point_masses) AppendPointMasses(model, &text);
   Sections sections;
   for (size_t k = 0; k < model.regions.size(); ++k) {
     if (sets[k] != model.regions[k].name)
@@ -220,7 +248,9 @@ std::string InpText(const PortableModel& model, InpDialect dialect) {
   }
   for (size_t g = 0; g < model.grips.size(); ++g)
     AddGrip(model.grips[g], sets[g], model, &sections);
-  AddLoads(model, &sections);
+  Eigen::Matrix3Xd weights(3, 0);
+  if (has_point_masses) weights = model.Gravity() * model.node_mass.transpose();
+  AddLoads(model, weights, &sections);
   text += InpMaterial(model, dialect) + "*SOLID SECTION, ELSET=BODY, MATERIAL=LACUNA\n";
   text += sections.amplitudes;
   AppendFrames(model, &text);

@@ -6,6 +6,9 @@
 // Forces and prescribed motions are tables over the total time. SI units. Node and element numbers
 // are those of the mesh plus 1.
 //
+// With kCalculixPointMasses each node has an element of its own with a point mass, whose number is
+// that of the node plus the number of tetrahedra, and its weight is a force on the node.
+//
 // Coordinates are written without exponent, with all digits that a double needs. CalculiX reads the
 // first 20 characters of a number, so that it loses digits below 1e-17 m and never an exponent.
 #ifndef LACUNA_EXCHANGE_INP_WRITER_H_

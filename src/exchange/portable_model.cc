@@ -11,6 +11,7 @@
 #include "effects/neo_hookean.h"
 #include "effects/standard_cards.h"
 #include "effects/stiffness_damping.h"
+#include "effects/uniform_density.h"
 #include "fem/prescribed_force.h"
 
 namespace lacuna {
@@ -161,8 +162,8 @@ PortableModel DescribeModel(const Model& model, const TetMesh& mesh,
   const Body& body = *model.body;
   PortableModel described;
   described.mesh = mesh;
-  described.density = body.density;
-  described.node_mass = body.node_mass;
+  described.density = DensityWith(model.effects, body.density);
+  described.node_mass = body.node_mass * (described.density / body.density);
   described.start = options.start_time;
   described.time_step = options.time_step;
   described.is_static = options.step.scheme == TimeScheme::kQuasiStatic;
@@ -171,7 +172,7 @@ PortableModel DescribeModel(const Model& model, const TetMesh& mesh,
   described.times = SampleTimes(described.frames, options.time_step);
   for (size_t g = 0; g < model.grips.size(); ++g)
     described.grips.push_back(DescribeGrip(model.grips[g], names.grips[g], mesh, described));
-  for (const auto& effect : model.effects) {
+  for (const auto& effect : WithDensityInBody(model.effects, body.density)) {
     if (dynamic_cast<const PrescribedForce*>(effect.get()) == nullptr) {
       described.effects.push_back(DescribeEffect(*effect));
       continue;

@@ -124,7 +124,8 @@ struct PortableNames {
 
 // Describes a model whose elements stand in `mesh` in the order in which they are exported. Frames
 // (s, ascending, on the model's clock) before options.start_time are left out; where none remains
-// the motion ends at its start. Provenance is left empty.
+// the motion ends at its start. Where the density is fitted, the description has the fitted one,
+// and α of mass-proportional damping for it. Provenance is left empty.
 PortableModel DescribeModel(const Model& model, const TetMesh& mesh,
                             const PredictionOptions& options, const std::vector<double>& frames,
                             const PortableNames& names);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/median.h"
 #include "experiment/scan_matches.h"
 
 namespace lacuna {
@@ -12,21 +13,15 @@ namespace {
 constexpr double kOutlier = 4;    // standard deviations from a patch's median
 constexpr int kFewestPoints = 3;  // fewest points with which a patch counts as seen
 
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Those of `points` whose errors are not outliers, in the same order.
 std::vector<int> Agreeing(const std::vector<ScanMatch>& matches, const std::vector<int>& points,
                           double noise) {
   std::vector<double> errors;
   for (const int j : points) errors.push_back(matches[j].error);
-  const double median = MedianOf(errors);
+  const double median = Median(errors);
   for (double& error : errors) error = std::abs(error - median);
   constexpr double kDeviationOfMedian = 1.4826;  // σ over median deviation, normal distribution
-  const double widest = kOutlier * std::max(noise, kDeviationOfMedian * MedianOf(errors));
+  const double widest = kOutlier * std::max(noise, kDeviationOfMedian * Median(errors));
   std::vector<int> kept;
   for (const int j : points)
     if (std::abs(matches[j].error - median) <= widest) kept.push_back(j);

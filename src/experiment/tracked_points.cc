@@ -117,4 +117,24 @@ void ConvertTrackedPointsToMarkers(const std::vector<int>& frames, Recording* re
   recording->markers.weights = WeightsOf(sigma);
 }
 
+Eigen::VectorXd TrackFactors(const Markers& markers, const std::vector<int>& frames) {
+  Eigen::VectorXd factors = Eigen::VectorXd::Ones(markers.places.cols());
+  if (markers.weights.empty() || frames.empty()) return factors;
+  for (Eigen::Index m = 0; m < factors.size(); ++m) {
+    double sum = 0;
+    for (const int frame : frames) sum += markers.weights[frame][m];
+    factors[m] = std::sqrt(sum / static_cast<double>(frames.size()));
+  }
+  return factors;
+}
+
+Eigen::MatrixXd WeightedTracks(const Markers& markers, const std::vector<int>& frames) {
+  Eigen::MatrixXd rows(markers.places.size(), static_cast<Eigen::Index>(frames.size()));
+  for (size_t k = 0; k < frames.size(); ++k)
+    rows.col(static_cast<Eigen::Index>(k)) = markers.positions[frames[k]].reshaped();
+  const Eigen::VectorXd factors = TrackFactors(markers, frames);
+  for (Eigen::Index m = 0; m < factors.size(); ++m) rows.middleRows<3>(3 * m) *= factors[m];
+  return rows;
+}
+
 }  // namespace lacuna

@@ -3,6 +3,7 @@
 #ifndef LACUNA_EXPERIMENT_TRACKED_POINTS_H_
 #define LACUNA_EXPERIMENT_TRACKED_POINTS_H_
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "scan/recording.h"
@@ -17,6 +18,14 @@ namespace lacuna {
 // InputError, which names the file, where a region contains no visible point, and whatever
 // LoadFrame throws.
 void ConvertTrackedPointsToMarkers(const std::vector<int>& frames, Recording* recording);
+
+// For each marker the root of its mean weight in `frames`, which must have weights: its tracks,
+// multiplied by this, have the noise of a marker of weight 1.
+Eigen::VectorXd TrackFactors(const Markers& markers, const std::vector<int>& frames);
+
+// The tracks of the markers in `frames` (3m × frames, m; NaN: not seen), each multiplied by its
+// TrackFactors there, so that all have the noise of a marker of weight 1.
+Eigen::MatrixXd WeightedTracks(const Markers& markers, const std::vector<int>& frames);
 
 }  // namespace lacuna
 

@@ -15,6 +15,7 @@
 #include "core/file_name.h"
 #include "core/quoted_text.h"
 #include "effects/effect_text.h"
+#include "effects/uniform_density.h"
 #include "geometry/mesh_io.h"
 #include "plan/planned_recording.h"
 #include "prediction/played_recording.h"
@@ -78,12 +79,14 @@ std::string ChangedExperiment(const FittedRun& fitted, std::vector<YamlChange> c
 // The fitted model with the planned recording alone.
 void WriteProtocol(const FittedRun& fitted, const PredictionStudy& study, const Entry& entry,
                    const fs::path& file) {
+  const EffectList fixed = WithDensityInBody(study.effects, study.density);
   std::vector<std::string> effects;
-  for (size_t k = 1; k < study.effects.size(); ++k) effects.push_back(Written(*study.effects[k]));
+  for (size_t k = 1; k < fixed.size(); ++k) effects.push_back(Written(*fixed[k]));
+  const double density = DensityWith(study.effects, study.density);
   std::vector<YamlChange> changes = {{"name", fmt::format("\"{}\"", FileNameFor(entry.name)), {}},
                                      {"output", "simulated", {}},
-                                     {"density", fmt::format("{} kg/m^3", study.density), {}},
-                                     {"material", Written(*study.effects.front()), {}},
+                                     {"density", fmt::format("{} kg/m^3", density), {}},
+                                     {"material", Written(*fixed.front()), {}},
                                      {"effects", fmt::format("[{}]", fmt::join(effects, ", ")), {}},
                                      {"noise", fmt::format("{} m", study.noise), {}},
                                      {"recordings", "[" + FormatEntry(entry) + "]", {}}};

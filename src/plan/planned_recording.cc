@@ -235,6 +235,7 @@ PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& 
   item.name = item.recording.name = protocol.name;
   item.fitted = true;
   item.fit_until = std::numeric_limits<double>::infinity();
+  item.simulated_cells.clear();  // a plan shows what is expected
   const std::vector<double> times = PlannedTimes(base, protocol.duration);
   const size_t fewest = study.scheme == TimeScheme::kQuasiStatic ? 1 : 3;
   if (times.size() < fewest)

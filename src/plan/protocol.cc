@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "effects/gravity.h"
+#include "effects/uniform_density.h"
 #include "geometry/tet_mesh.h"
 #include "report/quantity_text.h"
 
@@ -126,7 +127,7 @@ std::vector<Protocol> StockProtocols(const PredictionStudy& study, const TetMesh
       add(fmt::format("shake along {}", "xyz"[axis])).shake = Protocol::Shake{
           kShakeShare * size * Eigen::Vector3d::Unit(axis), kShakePeriods / duration};
   }
-  const double mass = study.density * TetVolumes(mesh).sum();
+  const double mass = DensityWith(study.effects, study.density) * TetVolumes(mesh).sum();
   add("added mass").weight = Protocol::Weight{kWeightShare * mass, FarthestMarker(item, mesh),
                                               kWeightRadius * BoundingBoxDiagonal(mesh.nodes)};
   add("more markers").more_markers = static_cast<int>(item.recording.markers.names.size());

@@ -2,6 +2,8 @@
 #ifndef LACUNA_PREDICTION_MISFIT_DIRECTION_H_
 #define LACUNA_PREDICTION_MISFIT_DIRECTION_H_
 
+#include <cstddef>
+
 #include "fem/tangent_linear.h"
 
 namespace lacuna {
@@ -9,12 +11,18 @@ namespace lacuna {
 // The variable by which one column of a Misfit's Jacobian is the derivative.
 struct MisfitDirection {
   // A parameter of the model, or a nuisance parameter of the recording: the delay, s, of its clock,
-  // the translation, m, or rotation, rad, of its coordinate system along or about an axis, or the
-  // delay, s, of one of its load cells behind the frames.
-  enum class Kind { kModel, kClock, kShift, kTurn, kCellDelay };
+  // the translation, m, or rotation, rad, of its coordinate system along or about an axis, the
+  // delay, s, of one of its load cells behind the frames, or the translation, m, or rotation, rad,
+  // of a grip along or about an axis (grip_placement.h).
+  enum class Kind { kModel, kClock, kShift, kTurn, kCellDelay, kGripShift, kGripTurn };
   Kind kind = Kind::kModel;
   int axis = 0;                    // kCellDelay: the number of the reading
   Perturbation perturbation = {};  // for kModel
+  size_t grip = 0;                 // for kGripShift and kGripTurn: its index in Model::grips
+
+  bool IsOfGrip() const { return kind == Kind::kGripShift || kind == Kind::kGripTurn; }
+  // Whether the derivative is that of the simulation. All others follow from the motion.
+  bool IsSimulated() const { return kind == Kind::kModel || IsOfGrip(); }
 };
 
 }  // namespace lacuna

@@ -7,29 +7,48 @@
 
 #include "core/error.h"
 #include "prediction/reaction_misfit.h"
+#include "prediction/reading_times.h"
 #include "scan/random_bits.h"
 
 namespace lacuna {
 namespace {
 
-// The reading of a load cell in the frames that it covers.
+// The reading of a load cell in the frames, at these times, that it covers and for which the
+// prediction got far enough.
 MeasuredReaction PlayedReading(const MeasuredReaction& reading, const ReactionMisfit& misfit,
                                const std::vector<double>& times) {
   MeasuredReaction played = reading;
   std::vector<double> covered;
   std::vector<Eigen::VectorXd> forces;
   for (size_t k = 0; k < times.size(); ++k) {
-    const Eigen::Index first = static_cast<Eigen::Index>(k) * misfit.components;
+    const Eigen::Index first = static_cast<Eigen::Index>(k) * reading.Components();
+    if (first + reading.Components() > misfit.residual.size()) break;
     if (!reading.Covers(times[k])) continue;
     covered.push_back(times[k]);
-    forces.emplace_back(misfit.residual.segment(first, misfit.components) +
+    forces.emplace_back(misfit.residual.segment(first, reading.Components()) +
                         ReadingAt(reading, times[k]));
   }
   const Eigen::Index count = static_cast<Eigen::Index>(covered.size());
   played.times = Eigen::Map<const Eigen::VectorXd>(covered.data(), count);
-  played.values.resize(misfit.components, count);
+  played.values.resize(reading.Components(), count);
   for (Eigen::Index k = 0; k < count; ++k) played.values.col(k) = forces[static_cast<size_t>(k)];
   return played;
+}
+
+// For each load cell, the times (s, of the model) of what it shows in the frames: a late cell shows
+// what was the case before. Empty for one without a delay.
+std::vector<std::vector<double>> CellTimesOf(const std::vector<double>& frame_times,
+                                             const RecordingModel& model,
+                                             const Eigen::VectorXd& nuisance) {
+  const std::vector<SimulatedCell>& cells = model.item().simulated_cells;
+  CHECK(cells.empty() || cells.size() == model.Reactions().size());
+  std::vector<std::vector<double>> times(model.Reactions().size());
+  for (size_t k = 0; k < times.size(); ++k) {
+    double delay = model.CellDelay(k, nuisance);
+    if (!cells.empty()) delay += cells[k].delay;
+    if (delay != 0) times[k] = Delayed(frame_times, delay);
+  }
+  return times;
 }
 
 }  // namespace
@@ -51,29 +70,39 @@ PlayedRecording Play(const RecordingModel& model, const Eigen::VectorXd& nuisanc
   const MarkerObserver* observer = model.Markers();
   CHECK(observer != nullptr) << model.item().name << " shows scans";
   const PredictedRecording& item = model.item();
+  const Model placed = model.PlacedModel(nuisance);
   PredictionOptions options = model.Options(nuisance);
-  options.reactions = MeasuredReactions(model.Reactions(), model.model());
-  const double late = model.Delay(nuisance);
+  options.reactions = MeasuredReactions(model.Reactions(), placed);
   const Eigen::Isometry3d registration = model.Registration(nuisance);
-  std::vector<double> times;
-  for (const int frame : item.frames) times.push_back(item.recording.times[frame] - late);
+  std::vector<double> of_frames;
+  for (const int frame : item.frames) of_frames.push_back(item.recording.times[frame]);
+  const std::vector<double> of_model = Delayed(of_frames, model.Delay(nuisance));
+  const std::vector<ReadingTime> moments =
+      ReadingTimesOf(of_model, CellTimesOf(of_model, model, nuisance));
   PlayedRecording played;
   std::vector<ReactionMisfit> reactions(model.Reactions().size());
   played.summary =
-      Predict(model.model(), options, times, {}, [&](int index, const PredictedState& state) {
+      Predict(placed, options, TimesOf(moments), {}, [&](int index, const PredictedState& state) {
+        const ReadingTime& moment = moments[static_cast<size_t>(index)];
+        for (const size_t k : moment.cells)
+          AppendReaction(model.Reactions(), k, of_frames[moment.frame], state, options.start_time,
+                         {}, &reactions[k]);
+        if (!moment.shows_frame) return;
         const Eigen::Index nodes = state.position.size() / 3;
-        played.times.push_back(item.recording.times[item.frames[static_cast<size_t>(index)]]);
+        played.times.push_back(of_frames[moment.frame]);
         played.positions.emplace_back(state.position.reshaped(3, nodes));
         played.velocities.emplace_back(state.velocity.reshaped(3, nodes));
         const Eigen::VectorXd seen = observer->rows() * state.position;
         const Eigen::Matrix3Xd markers = seen.reshaped(3, model.PointCount());
         played.markers.emplace_back(registration * markers);
-        for (size_t k = 0; k < reactions.size(); ++k)
-          AppendReaction(model.Reactions(), k, played.times.back(), state, options.start_time, {},
-                         &reactions[k]);
       });
-  for (size_t k = 0; k < reactions.size(); ++k)
-    played.reactions.push_back(PlayedReading(model.Reactions()[k], reactions[k], played.times));
+  for (size_t k = 0; k < reactions.size(); ++k) {
+    const MeasuredReaction& reading = model.Reactions()[k];
+    played.reactions.push_back(PlayedReading(reading, reactions[k], of_frames));
+    if (item.simulated_cells.empty()) continue;
+    played.reactions.back().values.colwise() +=
+        reading.directions.transpose() * item.simulated_cells[k].tare;
+  }
   return played;
 }
 

@@ -20,7 +20,8 @@ struct PlayedRecording {
   std::vector<Eigen::Matrix3Xd> positions;   // 3 × nodes, m, in the model's coordinates
   std::vector<Eigen::Matrix3Xd> velocities;  // m/s
   std::vector<Eigen::Matrix3Xd> markers;     // 3 × markers, m, in the recording's coordinates
-  std::vector<MeasuredReaction> reactions;   // N, over the frames that the readings cover
+  // N, over the frames that the readings cover, with the tare and the delay of the simulated cells.
+  std::vector<MeasuredReaction> reactions;
 };
 
 // The values of nuisances() with which a fit starts, the force of the hold among them. Throws

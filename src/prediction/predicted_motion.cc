@@ -12,7 +12,7 @@
 #include "experiment/known_loads.h"
 #include "experiment/scan_grips.h"
 #include "experiment/surface_observer.h"
-#include "fem/prescribed_force.h"
+#include "prediction/reading_times.h"
 
 namespace lacuna {
 namespace {
@@ -199,39 +199,7 @@ RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedReco
       AddNuisance(fmt::format("{}_{}", turns ? "turn" : "shift", "xyz"[axis]), turns ? "rad" : "m",
                   deviation, {turns ? Kind::kTurn : Kind::kShift, axis});
   }
-}
-
-void RecordingModel::AddNuisance(const std::string& name, const std::string& unit, double deviation,
-                                 MisfitDirection direction) {
-  Nuisance nuisance;
-  nuisance.prior.name = item_.name + "." + name;
-  nuisance.prior.prior_deviation = nuisance.prior.typical = deviation;
-  nuisance.direction = std::move(direction);
-  nuisance.unit = unit;
-  nuisances_.push_back(std::move(nuisance));
-}
-
-void RecordingModel::AddHold(const TetMesh& mesh) {
-  const std::string where = study_.file.string() + ": hold of " + item_.name;
-  const std::vector<int> nodes =
-      NamingWhere(where, [&] { return SelectNodes(item_.hold->region, mesh.nodes); });
-  const Eigen::VectorXi chosen =
-      Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
-  const Eigen::VectorXd areas = NodeBoundaryAreas(*model_.body);
-  if (areas(chosen).sum() == 0)
-    throw InputError(where + " touches no boundary node: its region is too small");
-  const Eigen::VectorXd share = BoundaryShares(*model_.body, chosen);
-  const double weight = 10 * model_.body->node_mass.sum();  // N, about the weight of the object
-  for (int axis = 0; axis < 3; ++axis) {
-    MisfitDirection direction;
-    Eigen::VectorXd& force = direction.perturbation.held_force;
-    force = Eigen::VectorXd::Zero(3 * share.size());
-    for (Eigen::Index i = 0; i < share.size(); ++i) force[3 * i + axis] = share[i];
-    AddNuisance(fmt::format("hold_force_{}", "xyz"[axis]), "N", weight, std::move(direction));
-    if (!item_.hold->force) continue;
-    nuisances_.back().prior.prior_mean = 0;
-    nuisances_.back().prior.start = (*item_.hold->force)[axis];
-  }
+  AddPlacements();
 }
 
 void RecordingModel::RequireThatScansShowTheObject() {
@@ -264,68 +232,6 @@ std::vector<int> RecordingModel::FittedFrames() const {
   return frames;
 }
 
-PredictionOptions RecordingModel::Options(const Eigen::VectorXd& nuisance) const {
-  CHECK_EQ(nuisance.size(), static_cast<Eigen::Index>(nuisances_.size()));
-  PredictionOptions options;
-  options.start_time = item_.StartTime();
-  options.time_step = study_.time_step;
-  options.step.scheme = study_.scheme;
-  // Far below the error of the time steps. Smaller tolerances take a quarter more time.
-  options.step.relative_tolerance = 1e-6;
-  options.step.linear.relative_tolerance = 1e-4;
-  // Derivatives that are off by 1e-4 lead a fit the same way.
-  options.sensitivity_tolerance = 1e-4;
-  options.held_force = Eigen::VectorXd::Zero(3 * model_.body->NodeCount());
-  for (size_t k = 0; k < nuisances_.size(); ++k) {
-    const Eigen::VectorXd& force = nuisances_[k].direction.perturbation.held_force;
-    if (force.size() > 0) options.held_force += nuisance[static_cast<Eigen::Index>(k)] * force;
-  }
-  return options;
-}
-
-double RecordingModel::Delay(const Eigen::VectorXd& nuisance) const {
-  double late = 0;
-  for (size_t k = 0; k < nuisances_.size(); ++k)
-    if (nuisances_[k].direction.kind == Kind::kClock)
-      late += nuisance[static_cast<Eigen::Index>(k)];
-  return late;
-}
-
-double RecordingModel::CellDelay(size_t reading, const Eigen::VectorXd& nuisance) const {
-  for (size_t k = 0; k < nuisances_.size(); ++k) {
-    const MisfitDirection& direction = nuisances_[k].direction;
-    if (direction.kind == Kind::kCellDelay && direction.axis == static_cast<int>(reading))
-      return nuisance[static_cast<Eigen::Index>(k)];
-  }
-  return 0;
-}
-
-Eigen::Isometry3d RecordingModel::Registration(const Eigen::VectorXd& nuisance) const {
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();
-  for (size_t k = 0; k < nuisances_.size(); ++k) {
-    const MisfitDirection& direction = nuisances_[k].direction;
-    if (direction.kind == Kind::kShift)
-      shift[direction.axis] = nuisance[static_cast<Eigen::Index>(k)];
-    if (direction.kind == Kind::kTurn)
-      turn[direction.axis] = nuisance[static_cast<Eigen::Index>(k)];
-  }
-  Eigen::Isometry3d registration = Eigen::Isometry3d::Identity();
-  if (shift.isZero(0) && turn.isZero(0)) return registration;
-  const Eigen::Vector3d middle = Middle();
-  const double angle = turn.norm();
-  if (angle > 0) registration.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
-  registration.translation() = middle + shift - registration.linear() * middle;
-  return registration;
-}
-
-Eigen::Vector3d RecordingModel::ByRegistration(const MisfitDirection& direction,
-                                               const Eigen::Isometry3d& registration,
-                                               const Eigen::Vector3d& place) const {
-  const Eigen::Vector3d axis = Eigen::Vector3d::Unit(direction.axis);
-  if (direction.kind == Kind::kShift) return axis;
-  return axis.cross(place - registration * Middle());
-}
-
 RecordingModel RecordingModel::With(const EffectList& effects) const {
   RecordingModel with = *this;
   CHECK_EQ(effects.size(), study_.effects.size());
@@ -333,46 +239,27 @@ RecordingModel RecordingModel::With(const EffectList& effects) const {
   return with;
 }
 
-std::vector<RecordingModel::Visit> RecordingModel::VisitsOf(const std::vector<double>& frame_times,
-                                                            double late,
-                                                            const Eigen::VectorXd& nuisance) const {
-  std::vector<Visit> visits;
-  for (size_t f = 0; f < frame_times.size(); ++f)
-    visits.push_back({frame_times[f] - late, f, true, {}});
-  for (size_t k = 0; k < Reactions().size(); ++k) {
-    const bool has_delay = Reactions()[k].delay_deviation > 0;
-    const double delay = CellDelay(k, nuisance);
-    for (size_t f = 0; f < frame_times.size(); ++f) {
-      if (has_delay)
-        visits.push_back({frame_times[f] - late - delay, f, false, {k}});
-      else
-        visits[f].readings.push_back(k);
-    }
-  }
-  std::stable_sort(visits.begin(), visits.end(),
-                   [](const Visit& a, const Visit& b) { return a.time < b.time; });
-  return visits;
-}
-
 Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
                                const std::vector<MisfitDirection>& directions,
                                const PredictionHints& hints) const {
   PredictionOptions options = Options(nuisance);
-  options.reactions = MeasuredReactions(Reactions(), model_);
+  const Model placed = PlacedModel(nuisance);
+  options.reactions = MeasuredReactions(Reactions(), placed);
   if (hints.near_equilibrium != nullptr) options.held_guess = *hints.near_equilibrium;
-  const double late = Delay(nuisance);
   std::vector<double> of_frames;
   for (const int frame : frames) of_frames.push_back(item_.recording.times[frame]);
-  const std::vector<Visit> visits = VisitsOf(of_frames, late, nuisance);
-  std::vector<double> times;
-  for (const Visit& visit : visits) times.push_back(visit.time);
+  const std::vector<double> of_model = Delayed(of_frames, Delay(nuisance));
+  std::vector<std::vector<double>> of_cells(Reactions().size());
+  for (size_t k = 0; k < of_cells.size(); ++k)
+    if (Reactions()[k].delay_deviation > 0) of_cells[k] = Delayed(of_model, CellDelay(k, nuisance));
+  const std::vector<ReadingTime> visits = ReadingTimesOf(of_model, of_cells);
 
   // The derivatives by clock and registration follow from velocity and position, without a tangent.
   std::vector<Perturbation> perturbations;
   std::vector<Eigen::Index> column;
   for (const MisfitDirection& direction : directions) {
     column.push_back(static_cast<Eigen::Index>(perturbations.size()));
-    if (direction.kind == Kind::kModel) perturbations.push_back(direction.perturbation);
+    if (direction.IsSimulated()) perturbations.push_back(PerturbationBy(direction, nuisance));
   }
   const Eigen::Isometry3d registration = Registration(nuisance);
   const bool is_registered = item_.shift_deviation > 0 || item_.turn_deviation > 0;
@@ -385,13 +272,14 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   misfit.residual.resize(rows_of_frame * static_cast<Eigen::Index>(frames.size()));
   misfit.jacobian.setZero(misfit.residual.size(), static_cast<Eigen::Index>(directions.size()));
   misfit.summary = lacuna::Predict(
-      model_, options, times, perturbations, [&](int number, const PredictedState& state) {
-        const Visit& visit = visits[static_cast<size_t>(number)];
+      placed, options, TimesOf(visits), perturbations,
+      [&](int number, const PredictedState& state) {
+        const ReadingTime& visit = visits[static_cast<size_t>(number)];
         const Eigen::Index index = static_cast<Eigen::Index>(visit.frame);
-        for (const size_t k : visit.readings)
+        for (const size_t k : visit.cells)
           AppendReaction(Reactions(), k, of_frames[visit.frame], state, options.start_time,
                          directions, &misfit.reactions[k]);
-        if (!visit.with_points) return;
+        if (!visit.shows_frame) return;
         NodalMotion nodal{state.position, state.velocity, {}};
         if (!perturbations.empty()) nodal.jacobian = state.position_jacobian;
         if (is_registered) nodal.Register(registration);
@@ -403,6 +291,8 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
         const auto derivative = [&](size_t k) -> Eigen::VectorXd {
           switch (directions[k].kind) {
             case Kind::kModel:
+            case Kind::kGripShift:
+            case Kind::kGripTurn:
               return nodal.jacobian.col(column[k]);
             case Kind::kClock:
               return (moves ? -1.0 : 0.0) * nodal.velocity;

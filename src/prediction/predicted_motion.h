@@ -11,6 +11,7 @@
 #include "experiment/observer.h"
 #include "experiment/reference_body.h"
 #include "fem/prediction.h"
+#include "prediction/grip_placement.h"
 #include "prediction/misfit_direction.h"
 #include "prediction/prediction_study.h"
 #include "prediction/reaction_misfit.h"
@@ -82,8 +83,8 @@ class RecordingModel {
     return dynamic_cast<const MarkerObserver*>(observer_.get());
   }
   // A nuisance parameter of the recording: a component of the force that holds the body, the clock,
-  // the delay of a load cell, or a component of the registration. It starts at 0 unless the force
-  // is given.
+  // the delay of a load cell, or a component of the registration or of a grip's placement. It
+  // starts at 0 unless the force is given.
   struct Nuisance {
     CalibratedParameter prior;
     MisfitDirection direction;
@@ -105,8 +106,11 @@ class RecordingModel {
 
   std::vector<int> FittedFrames() const;
 
-  // The options of a prediction with these nuisance parameters, and the delay, s, of the
-  // recording's clock.
+  // The model whose grips have the placements of these nuisance parameters; that of the recording
+  // where all placements are exact.
+  Model PlacedModel(const Eigen::VectorXd& nuisance) const;
+  // The options of a prediction with PlacedModel() and these nuisance parameters, and the delay, s,
+  // of the recording's clock.
   PredictionOptions Options(const Eigen::VectorXd& nuisance) const;
   double Delay(const Eigen::VectorXd& nuisance) const;
   // The delay, s, of a load cell behind the recording's clock.
@@ -114,6 +118,8 @@ class RecordingModel {
   // The transform from the fixture's coordinate system, which is the model's, to the recording's: a
   // rotation about the mean of the markers' places, then a translation.
   Eigen::Isometry3d Registration(const Eigen::VectorXd& nuisance) const;
+  // The placement of a grip, by its index in Model::grips.
+  GripPlacement PlacementOf(size_t grip, const Eigen::VectorXd& nuisance) const;
   // The derivative of a place in the recording's coordinates by a translation or a small rotation.
   Eigen::Vector3d ByRegistration(const MisfitDirection& direction,
                                  const Eigen::Isometry3d& registration,
@@ -130,18 +136,11 @@ class RecordingModel {
   const PredictionStudy& study_;
   const PredictedRecording& item_;
   Model model_;
-  // A time of the model at which a frame is compared: its points, readings of load cells, or both.
-  struct Visit {
-    double time = 0;   // s
-    size_t frame = 0;  // among those that are predicted
-    bool with_points = false;
-    std::vector<size_t> readings;
-  };
-  // Those of frames at these times (s, the recording's, whose clock is `late`), ascending. A load
-  // cell with a delay of its own is compared at other times than the points.
-  std::vector<Visit> VisitsOf(const std::vector<double>& frame_times, double late,
-                              const Eigen::VectorXd& nuisance) const;
   void AddHold(const TetMesh& mesh);
+  void AddPlacements();
+  // What a simulated direction perturbs with these nuisance parameters.
+  Perturbation PerturbationBy(const MisfitDirection& direction,
+                              const Eigen::VectorXd& nuisance) const;
   void AddNuisance(const std::string& name, const std::string& unit, double deviation,
                    MisfitDirection direction);
   void RequireThatScansShowTheObject();

@@ -158,7 +158,11 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
     item.shift_deviation = registration->Quantity("shift_deviation", kLength, kPositive);
     item.turn_deviation = registration->Quantity("turn_deviation", kAngle, kPositive);
   }
-  if (const auto hold = config.OptionalChild("hold")) item.hold = ReadHold(*hold, item.recording);
+  if (const auto hold = config.OptionalChild("hold")) {
+    item.hold = ReadHold(*hold, item.recording);
+    AddFileOf(item.hold->region, &item.recording);
+  }
+  item.simulated_cells = ReadSimulatedCells(config, item.recording.object.reactions);
   for (const Config& effect : config.Items("effects"))
     item.effects.push_back(MakeEffect(effect, material));
 

@@ -67,8 +67,9 @@ PredictedStates PredictStates(const RecordingModel& recording, const Eigen::Vect
     times.insert(start, options.start_time);
   }
   double time_before = options.start_time;
+  const Model placed = recording.PlacedModel(nuisance);
   predicted.summary =
-      Predict(recording.model(), options, times, {}, [&](int index, const PredictedState& state) {
+      Predict(placed, options, times, {}, [&](int index, const PredictedState& state) {
         const std::vector<Eigen::VectorXd>& effect_state = memory.Advance(
             state.position, state.velocity, state.time, std::max(state.time - time_before, 0.0));
         time_before = std::max(state.time, time_before);

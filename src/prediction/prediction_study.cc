@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include "effects/uniform_density.h"
+
 namespace lacuna {
 
 std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
@@ -54,6 +56,10 @@ std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
     if (is_material) of_material = parameters.size();
   }
   return parameters;
+}
+
+bool IsDensity(const ModelParameter& parameter, const EffectList& effects) {
+  return IsUniformDensity(*effects[parameter.places.front().effect]);
 }
 
 EffectList WithValues(const EffectList& effects, const std::vector<ModelParameter>& parameters,

@@ -21,6 +21,7 @@
 #include "fem/step_equation.h"
 #include "fit/calibration.h"
 #include "geometry/surface_patches.h"
+#include "prediction/simulated_cell.h"
 #include "scan/recording.h"
 
 namespace lacuna {
@@ -52,6 +53,9 @@ struct PredictedRecording {
   // between the recording's coordinate system and the fixture; 0 where they agree.
   double shift_deviation = 0, turn_deviation = 0;
   EffectList effects;  // effects in this recording only, such as an attached mass
+  // The errors of its load cells where it is played, one for each reading; empty: none. A fit does
+  // not know them.
+  std::vector<SimulatedCell> simulated_cells = {};
 
   // The time, s, until which the object is at rest.
   double StartTime() const { return hold ? hold->release : recording.times[frames.front()]; }
@@ -73,6 +77,8 @@ struct ModelParameter {
 };
 // All parameters of these effects except settings, with the bounds and priors of their cards.
 std::vector<ModelParameter> ModelParameters(const EffectList& effects);
+// Whether a parameter is the density of the body, which the experiment states beside the effects.
+bool IsDensity(const ModelParameter& parameter, const EffectList& effects);
 // The same effects with these values of the parameters (SI, in the order of `parameters`; further
 // entries are not read).
 EffectList WithValues(const EffectList& effects, const std::vector<ModelParameter>& parameters,
@@ -85,6 +91,10 @@ struct PredictionStudy {
   MeshSettings mesh;
   int sheet_layers = 1;
   double density = 0;  // kg/m³
+  // Relative standard deviation (prior) of the density; 0: it is exact. Otherwise the reader
+  // appends the density to `fitted` and its effect to `effects` (effects/uniform_density.h);
+  // IsDensity() finds it.
+  double density_deviation = 0;
   EffectList effects;  // the material first
   TimeScheme scheme = TimeScheme::kTwoStep;
   double time_step = 0.005;         // s; quasi-static steps may be shorter

@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "effects/gravity.h"
+#include "effects/uniform_density.h"
 #include "experiment/model_reader.h"
 #include "prediction/predicted_recording_reader.h"
 #include "prediction/recorded_motion.h"
@@ -76,6 +78,41 @@ std::vector<ModelParameter> ReadFitted(const Config& config, const EffectList& e
     fitted.push_back(parameter);
   }
   return fitted;
+}
+
+// Makes the density a parameter of the fit where `density_deviation` is given. Its weight is that
+// of the model's gravity, which must therefore be known and the same in all recordings.
+void AddDensity(const Config& config, PredictionStudy* study) {
+  constexpr double kLargestFactor = 10;  // of the density, either way: bounds far beyond the prior
+  // Not read where it is absent, so that the configuration of other experiments stays the same.
+  if (!config.Has("density_deviation")) return;
+  study->density_deviation = config.Number("density_deviation", Bounds{0, 0.5});
+  if (study->density_deviation == 0) return;
+  const auto is_gravity = [](const std::shared_ptr<const Effect>& effect) {
+    return &effect->Card() == &GravityCard();
+  };
+  for (const ModelParameter& parameter : study->fitted)
+    if (is_gravity(study->effects[parameter.places.front().effect]))
+      config.Fail("density_deviation",
+                  fmt::format("cannot be combined with a fitted {}: the weight of the object is "
+                              "the product of both",
+                              parameter.prior.name));
+  for (const PredictedRecording& item : study->recordings)
+    if (std::any_of(item.effects.begin(), item.effects.end(), is_gravity))
+      config.Fail("density_deviation",
+                  fmt::format("needs gravity in the list `effects` of the experiment, not in that "
+                              "of {}",
+                              item.name));
+  study->effects.push_back(MakeUniformDensity(
+      study->density, GravityOf(study->effects).value_or(Eigen::Vector3d::Zero())));
+  ModelParameter parameter = ModelParameters(study->effects).back();
+  CalibratedParameter& prior = parameter.prior;
+  prior.name = "density";
+  prior.min = study->density / kLargestFactor;
+  prior.max = study->density * kLargestFactor;
+  prior.prior_mean = study->density;
+  prior.prior_deviation = prior.typical = study->density_deviation;
+  study->fitted.push_back(parameter);
 }
 
 constexpr double kLongestStep = 0.005;  // s, largest initial time step
@@ -173,6 +210,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.density = density ? config.Quantity("density", kDensity, kPositive, *density)
                           : config.Quantity("density", kDensity, kPositive);
   study.fitted = ReadFitted(config, study.effects);
+  AddDensity(config, &study);
   config.RefuseUnknownKeys();
   study.configuration = config.Resolved();
   return study;

@@ -19,7 +19,7 @@ Eigen::Matrix3Xd ReactionBy(const std::vector<MisfitDirection>& directions, Eige
   Eigen::Index of_model = 0;
   for (size_t d = 0; d < directions.size(); ++d) {
     auto column = by.col(static_cast<Eigen::Index>(d));
-    if (directions[d].kind == MisfitDirection::Kind::kModel)
+    if (directions[d].IsSimulated())
       column = state.reaction_jacobian.block<3, 1>(3 * k, of_model++);
     else if (IsDelay(directions[d], k) && state.time > start_time)
       column = -state.reaction_rate.segment<3>(3 * k);

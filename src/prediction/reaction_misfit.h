@@ -29,7 +29,9 @@ struct ReactionMisfit {
   double sign = 1;
 };
 
-// The reactions that are measured, one per reading, for the model of a RecordingModel.
+// The reactions that are measured, one per reading, for the model of a RecordingModel. A torque
+// refers to a point of the grip at its recorded place; the point does not follow a placement of the
+// grip (prediction/grip_placement.h).
 std::vector<Reaction> MeasuredReactions(const std::vector<MeasuredReaction>& readings,
                                         const Model& model);
 

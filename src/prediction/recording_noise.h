@@ -9,9 +9,8 @@
 namespace lacuna {
 
 // The standard deviation of a recording's noise, m, estimated from `frames` (ascending). For
-// markers it is that of a coordinate of a marker of weight 1: the scatter while the markers rest
-// or, where they never rest, the white part of their motion (WhiteNoise); 0 for fewer than three
-// frames. For a scan it is that of a point along the surface normal (EstimateScanNoise).
+// markers it is that of a coordinate of a marker of weight 1 (EstimateTrackNoise); 0 for fewer than
+// three frames. For a scan it is that of a point along the surface normal (EstimateScanNoise).
 double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<int>& frames);
 
 }  // namespace lacuna

@@ -48,7 +48,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
                       const EffectList& further) {
   ReplayedMotion motion;
   const Model& model = recording.model();
-  Model loaded = model;
+  Model loaded = recording.PlacedModel(nuisance);
   loaded.effects.insert(loaded.effects.end(), further.begin(), further.end());
   CHECK(recording.Markers() != nullptr) << "only markers are replayed";
   const std::vector<int>& frames = recording.item().frames;

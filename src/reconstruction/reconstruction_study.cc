@@ -184,6 +184,7 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
                                                  : config.Quantity("density", kDensity, kPositive);
   study.effects = ReadEffects(config);
   study.follow = ReadFollow(config, study.recording.data.folder);
+  if (study.follow.forces.region) AddFileOf(*study.follow.forces.region, &study.recording);
   ReadValidation(config, &study.validation);
   config.RefuseUnknownKeys();
   if (study.frames.size() < 2 && study.recording.reference.source == ReferenceSource::kFirstFrame) {

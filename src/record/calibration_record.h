@@ -31,6 +31,15 @@ struct NearBound {
 std::optional<NearBound> FindNearBound(const ParameterEstimate& estimate, bool log_scale,
                                        double low, double high);
 
+// How much of the information about a parameter comes from each kind of data: its part of
+// Σ (∂r/∂θ)², summed over the whitened rows of the fitted data, with all other parameters fixed.
+// The sum of the shares is 1.
+struct DataShares {
+  double markers = 0;  // tracked points included
+  double scans = 0;    // point clouds, depth images, meshes
+  double forces = 0;   // torques included
+};
+
 struct FittedParameter {
   std::string name, unit;
   bool log_scale = false;  // estimated on a logarithmic scale
@@ -41,9 +50,8 @@ struct FittedParameter {
   // The value extrapolated to infinitely fine elements, where possible, and infinitely short time
   // steps. The interval is centred there. Absent where the model misses the data by far.
   std::optional<double> at_limit = {};
-  // The share of the measured forces in what the fitted data tell about the parameter if all others
-  // are known, Σ (∂r/∂θ)² over their whitened rows. Absent where no force is measured.
-  std::optional<double> share_of_forces = {};
+  // Absent where the fit has one kind of data only, and where no prediction depends on it.
+  std::optional<DataShares> shares = {};
 };
 
 // A parameter of the model that is not fitted: one value, or the components of a vector.

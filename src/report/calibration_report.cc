@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -77,6 +78,28 @@ std::string HeldText(const CalibrationRecord& record) {
                                parameter.unit.empty() ? "" : " ", parameter.unit));
   }
   return Wrapped(fmt::format("held fixed: {}", fmt::join(held, "; ")), "  ", "    ");
+}
+
+// Empty where the fit has one kind of data only.
+std::string SharesTable(const std::vector<FittedParameter>& parameters) {
+  constexpr std::pair<const char*, double DataShares::*> kKinds[] = {
+      {"markers", &DataShares::markers},
+      {"scans", &DataShares::scans},
+      {"forces", &DataShares::forces}};
+  std::string rows, header;
+  for (const auto& [name, share] : kKinds) header += fmt::format(" {:>9}", name);
+  for (const FittedParameter& parameter : parameters) {
+    if (!parameter.shares) continue;
+    rows += fmt::format("  {:34}", parameter.name);
+    for (const auto& [name, share] : kKinds)
+      rows += fmt::format(" {:>7.0f} %", 100 * (*parameter.shares).*share);
+    rows += "\n";
+  }
+  if (rows.empty()) return "";
+  return fmt::format(
+      "\n  Share of each kind of data in the information about a parameter, with all other "
+      "parameters held fixed:\n  {:34}{}\n{}\n",
+      "parameter", header, rows);
 }
 
 std::string Describe(const MisfitMeasure& measure) {
@@ -207,9 +230,8 @@ std::string CalibrationSummary(const CalibrationRecord& record) {
 
 std::string CalibrationReport(const CalibrationRecord& record) {
   std::string text = ParameterTable(record);
-  if (const std::string shares = SharesText(record.parameters); !shares.empty())
-    text += Wrapped(shares, "  ", "    ");
-  text += HeldText(record) + NoiseText(record) + TimeStepText(record);
+  text +=
+      SharesTable(record.parameters) + HeldText(record) + NoiseText(record) + TimeStepText(record);
   for (const FittedRecording& recording : record.recordings) text += RecordingText(recording);
   for (const PriorConflict& conflict : record.prior_conflicts)
     text += Wrapped("prior conflict: " + DescribePriorConflict(conflict), "  ", "    ");

@@ -171,30 +171,54 @@ std::string DescribePair(const ComparedPair& pair) {
       Millimetres(pair.distance / std::sqrt(2.0)));
 }
 
+// What the two rms errors of the table are; empty where only one is known.
+std::string ExplainPlaces(const ComparisonRecord& record) {
+  bool is_known = false, has_markers = false, has_scans = false;
+  for (const ComparedRecording& recording : record.recordings) {
+    (recording.is_scan ? has_scans : has_markers) = true;
+    for (const ComparedPart& part : recording.parts)
+      is_known = is_known || !std::isnan(part.rms_at_measured_places);
+  }
+  if (!is_known) return "";
+  const char* point = has_scans && has_markers ? "marker or patch" : has_scans ? "patch" : "marker";
+  const char* uncertainty = has_scans && has_markers ? "place_deviation, scan.shape_deviation"
+                            : has_scans              ? "scan.shape_deviation"
+                                                     : "place_deviation";
+  return "\n" + Wrapped(fmt::format(
+                            "rms: with each {0} at the place on the object that the fit gives it "
+                            "within the uncertainty of its measurement ({1}). as measured: with "
+                            "each {0} at the place where it was measured. Where the second is much "
+                            "larger, the fit ascribes the difference to errors of these places.",
+                            point, uncertainty),
+                        "  ", "  ");
+}
+
 }  // namespace
 
 std::string ComparisonTable(const ComparisonRecord& record) {
   const auto row = [](const std::string& name, const std::string& part, const std::string& frames,
-                      const std::string& rms, const std::string& over_sigma,
-                      const std::string& over_floor, const std::string& correlation,
-                      const std::string& worst) {
-    return "  " + PaddedRight(name, 15) + PaddedRight(part, 10) + PaddedLeft(frames, 6) +
-           PaddedLeft(rms, 12) + PaddedLeft(over_sigma, 9) + PaddedLeft(over_floor, 13) +
-           PaddedLeft(correlation, 15) + PaddedLeft(worst, 15) + "\n";
+                      const std::string& rms, const std::string& as_measured,
+                      const std::string& over_sigma, const std::string& over_floor,
+                      const std::string& correlation, const std::string& worst) {
+    return "  " + PaddedRight(name, 15) + PaddedRight(part, 9) + PaddedLeft(frames, 6) +
+           PaddedLeft(rms, 10) + PaddedLeft(as_measured, 13) + PaddedLeft(over_sigma, 9) +
+           PaddedLeft(over_floor, 12) + PaddedLeft(correlation, 12) + PaddedLeft(worst, 12) + "\n";
   };
   const auto number = [](double value, int decimals) {
     return std::isnan(value) ? std::string("-") : fmt::format("{:.{}f}", value, decimals);
   };
-  std::string table = row("recording", "frames", "count", "rms (mm)", "rms / σ", "rms / floor",
-                          "lag-1 corr.", "worst point");
+  std::string table = row("recording", "frames", "count", "rms (mm)", "as measured", "rms / σ",
+                          "rms / floor", "lag-1 corr.", "worst point");
   for (const ComparedRecording& recording : record.recordings) {
     for (const ComparedPart& part : recording.parts) {
       table += row(recording.name, part.fitted ? "fitted" : "held out", std::to_string(part.frames),
-                   number(1e3 * part.error.rms, 3), number(part.error.rms_over_sigma, 1),
-                   number(part.error.rms_over_floor, 1), number(part.in_time.lag_one, 2),
+                   number(1e3 * part.error.rms, 3), number(1e3 * part.rms_at_measured_places, 3),
+                   number(part.error.rms_over_sigma, 1), number(part.error.rms_over_floor, 1),
+                   number(part.in_time.lag_one, 2),
                    part.worst_point < 0 ? "-" : recording.point_names[part.worst_point]);
     }
   }
+  table += ExplainPlaces(record);
   for (const ComparedRecording& recording : record.recordings) {
     if (recording.reactions.empty()) continue;
     table += fmt::format("\n  measured forces of {}: rms error of a component\n", recording.name);

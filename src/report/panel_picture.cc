@@ -83,11 +83,13 @@ std::pair<double, double> ColourRange(const PanelPicture& picture,
   return {low, high};
 }
 
-// Even steps of lightness from dark blue to yellow: readable in grey and by colour-blind readers.
+// Even steps of lightness from yellow to dark blue: readable in grey and by colour-blind readers.
+// The small values, which cover most of a surface, are light, so that edges drawn on it can be
+// seen.
 vtkNew<vtkColorTransferFunction> Colours(std::pair<double, double> range) {
-  constexpr double kStops[][3] = {{0.267, 0.005, 0.329}, {0.254, 0.265, 0.530},
-                                  {0.164, 0.471, 0.558}, {0.135, 0.659, 0.518},
-                                  {0.478, 0.821, 0.318}, {0.993, 0.906, 0.144}};
+  constexpr double kStops[][3] = {{0.993, 0.906, 0.144}, {0.478, 0.821, 0.318},
+                                  {0.135, 0.659, 0.518}, {0.164, 0.471, 0.558},
+                                  {0.254, 0.265, 0.530}, {0.267, 0.005, 0.329}};
   const double width =
       std::max(range.second - range.first, 1e-12 * std::max(1e-300, std::abs(range.first)));
   vtkNew<vtkColorTransferFunction> colours;
@@ -117,8 +119,8 @@ vtkNew<vtkActor> ActorOf(const PanelSurface& drawn, vtkColorTransferFunction* co
   if (drawn.flat) property->SetInterpolationToFlat();
   if (drawn.only_edges) {
     property->SetRepresentationToWireframe();
-    property->SetLighting(false);
   }
+  property->SetLighting(drawn.is_lit && !drawn.only_edges);
   return actor;
 }
 

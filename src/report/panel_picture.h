@@ -25,6 +25,7 @@ struct PanelSurface {
   bool show_edges = false;
   bool only_edges = false;  // draw the edges alone, in `colour`
   bool flat = false;        // each triangle in one shade: for cuts and facets
+  bool is_lit = true;       // false: `colour` as it is, without shading
 };
 
 struct PanelPoints {

@@ -50,18 +50,4 @@ std::string DescribeReactionFit(const FittedReaction& reaction, const std::strin
   return text + " " + NoiseAndTare(reaction) + ".";
 }
 
-std::string SharesText(const std::vector<FittedParameter>& parameters) {
-  std::vector<std::string> shares;
-  for (const FittedParameter& parameter : parameters)
-    if (parameter.share_of_forces)
-      shares.push_back(
-          fmt::format("{} {:.0f} %", parameter.name, 100 * *parameter.share_of_forces));
-  if (shares.empty()) return "";
-  return fmt::format(
-      "share of the measured forces in what the data tell, the rest being that of markers or "
-      "scans: "
-      "{}",
-      fmt::join(shares, "; "));
-}
-
 }  // namespace lacuna

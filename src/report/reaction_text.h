@@ -3,7 +3,6 @@
 #define LACUNA_REPORT_REACTION_TEXT_H_
 
 #include <string>
-#include <vector>
 
 #include "record/calibration_record.h"
 
@@ -14,9 +13,6 @@ std::string ReactionLines(const FittedReaction& reaction);
 
 // A paragraph about how well a model predicts a reading of the recording.
 std::string DescribeReactionFit(const FittedReaction& reaction, const std::string& recording);
-
-// What the measured forces determine of each parameter; empty where none is measured.
-std::string SharesText(const std::vector<FittedParameter>& parameters);
 
 }  // namespace lacuna
 

@@ -5,13 +5,10 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "core/error.h"
 #include "core/json_number.h"
 #include "geometry/thinned_surface.h"
 #include "record/json_vector.h"
@@ -19,6 +16,7 @@
 #include "record/packed_array.h"
 #include "record/recorded_residuals.h"
 #include "record/run_directory.h"
+#include "report/reaction_curves.h"
 
 namespace lacuna {
 namespace {
@@ -112,42 +110,6 @@ std::vector<int> RowsOf(const CsvTable& table, size_t recording) {
   return rows;
 }
 
-const Eigen::VectorXd& ColumnNamed(const CsvTable& table, const std::string& name,
-                                   const fs::path& file) {
-  for (const CsvColumn& column : table)
-    if (column.name == name) return column.values;
-  throw InputError({file.string()}, "has no column " + name);
-}
-
-// The measured force of reactions.csv that varies most, over the displacement of its grip; null
-// where the recording has none.
-json LoadOf(const CsvTable& table, size_t recording, const fs::path& file) {
-  std::map<std::pair<double, double>, std::vector<int>> curves;  // by reading and component
-  const std::vector<int> rows = RowsOf(table, recording);
-  if (rows.empty()) return nullptr;
-  const auto column = [&](const std::string& name) -> const Eigen::VectorXd& {
-    return ColumnNamed(table, name, file);
-  };
-  const Eigen::VectorXd& measured = column("measured_N");
-  for (const int row : rows)
-    if (!std::isnan(measured[row]))
-      curves[{column("reaction")[row], column("component")[row]}].push_back(row);
-  const std::vector<int>* best = nullptr;
-  double most = -1;
-  for (const auto& [which, of_curve] : curves) {
-    const Eigen::VectorXd forces = measured(of_curve);
-    const double range = forces.maxCoeff() - forces.minCoeff();
-    if (range <= most) continue;
-    most = range;
-    best = &of_curve;
-  }
-  if (best == nullptr) return nullptr;
-  const Eigen::VectorXd force = measured(*best);
-  return {{"displacement_m", VectorToJson(column("displacement_m")(*best))},
-          {"force_N", VectorToJson(force)},
-          {"model_force_N", VectorToJson(force + column("difference_N")(*best))}};
-}
-
 // The rows of unexplained_force.csv for one recording; null where there are none.
 json ForceOf(const CsvTable& table, size_t recording) {
   const std::vector<int> rows = RowsOf(table, recording);
@@ -168,7 +130,7 @@ json ForceOf(const CsvTable& table, size_t recording) {
 }
 
 json SceneOf(const ReportedModel& model, size_t r, const RecordedResiduals& residuals,
-             const CsvTable& forces, const json& load) {
+             const CsvTable& forces, const json& reactions) {
   const FittedRecording& recording = model.calibration.recordings[r];
   const double sigma = NoiseOf(model.calibration, recording);
   const std::optional<StoredMotion> motion = FindMotion(model, r);
@@ -197,7 +159,7 @@ json SceneOf(const ReportedModel& model, size_t r, const RecordedResiduals& resi
             {"measured", PackSeries(residuals.measured, sigma)},
             {"model", PackSeries(modelled, sigma)}}},
           {"force", ForceOf(forces, r)},
-          {"load", load},
+          {"reactions", reactions},
           {"notes", motion ? json(motion->notes) : json::array()}};
 }
 
@@ -211,12 +173,12 @@ json SceneDocuments(const ReportedModel& model) {
   const fs::path force_file = model.folder / "comparison/unexplained_force.csv";
   const CsvTable forces =
       model.comparison && fs::exists(force_file) ? LoadCsv(force_file) : CsvTable();
-  const fs::path reaction_file = file.parent_path() / "reactions.csv";
-  const CsvTable reactions = fs::exists(reaction_file) ? LoadCsv(reaction_file) : CsvTable();
+  const ReactionTables reactions = LoadReactionTables(file.parent_path());
   for (size_t r = 0; r < model.calibration.recordings.size(); ++r) {
     const RecordedResiduals residuals = ReadResiduals(misfit, static_cast<int>(r), file);
     if (!residuals.frames.empty())
-      scenes.push_back(SceneOf(model, r, residuals, forces, LoadOf(reactions, r, reaction_file)));
+      scenes.push_back(SceneOf(model, r, residuals, forces,
+                               ReactionCurves(reactions, r, model.calibration.recordings[r])));
   }
   return scenes;
 }
@@ -234,7 +196,7 @@ json ReconstructionScene(const fs::path& run) {
           {"series", nullptr},
           {"points_series", nullptr},
           {"force", nullptr},
-          {"load", nullptr},
+          {"reactions", json::array()},
           {"notes", motion.notes}};
 }
 

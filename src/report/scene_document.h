@@ -13,8 +13,8 @@ namespace lacuna {
 
 // The scenes of all recordings of a fitted model: its points and errors from misfit.csv, the
 // surface from MotionFile(), the unexplained force from comparison/unexplained_force.csv, where
-// these are of this fit, and the load from reactions.csv. Throws InputError when one of the files
-// is damaged.
+// these are of this fit, and the measured reactions of grips from reactions.csv and torques.csv.
+// Throws InputError when one of the files is damaged.
 nlohmann::json SceneDocuments(const ReportedModel& model);
 
 // The scene of a reconstruction, from results/shown_motion.json; null where it has none.

@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/median.h"
 #include "geometry/nearest.h"
 
 namespace lacuna {
@@ -50,12 +51,6 @@ Eigen::VectorXi NumberByWeight(const Eigen::VectorXi& set, const Eigen::VectorXd
     if (set[i] >= 0) component[i] = number[set[i]];
   }
   return component;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // The width of the cubes through which points are connected.

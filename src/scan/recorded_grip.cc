@@ -57,6 +57,27 @@ Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time) {
   return motion;
 }
 
+PlacementDeviation ReadPlacement(const Config& config, AxisSet axes) {
+  const std::optional<Config> entry = config.OptionalChild("placement");
+  if (!entry) return {};
+  const PlacementDeviation placement{entry->Quantity("shift_deviation", kLength, kNotNegative, 0),
+                                     entry->Quantity("turn_deviation", kAngle, kNotNegative, 0)};
+  if (placement.IsExact())
+    config.Fail("placement", "needs a shift_deviation or a turn_deviation above 0");
+  if (!axes.IsAll())
+    config.Fail("placement",
+                "cannot be combined with `directions`: the part is not held along all "
+                "axes");
+  return placement;
+}
+
+std::string WithPlacement(std::string mapping, const PlacementDeviation& placement) {
+  if (placement.IsExact()) return mapping;
+  mapping.pop_back();
+  return mapping + fmt::format(", placement: {{shift_deviation: {} m, turn_deviation: {} rad}}}}",
+                               placement.shift, placement.turn);
+}
+
 std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& data,
                                     const FrameData& frames,
                                     const std::vector<std::string>& marker_names) {
@@ -81,6 +102,7 @@ std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& da
       item.Fail("directions", path ? "cannot be combined with a `turn` of the path"
                                    : "needs a `path`: a part that follows markers or a scan is "
                                      "held along all axes");
+    grip.placement = ReadPlacement(item, grip.axes);
     if (grip.deforms && path) item.Fail("deforms", "a grip that moves along a path is rigid");
     grips.push_back(std::move(grip));
   }
@@ -100,7 +122,8 @@ std::string DescribeGrip(const RecordedGrip& grip) {
 
 std::string WriteGrip(const std::filesystem::path& folder, const RecordedGrip& grip,
                       size_t number) {
-  std::string item = WithDirections(FormatRegion(grip.region), grip.axes);
+  std::string item =
+      WithPlacement(WithDirections(FormatRegion(grip.region), grip.axes), grip.placement);
   item.pop_back();
   if (grip.deforms) item += ", deforms: true";
   if (grip.motion == GripMotion::kFollowsScan) return item + "}";

@@ -21,12 +21,20 @@ enum class GripMotion {
   kGiven            // a given path
 };
 
+// How well the place of a held part is known: standard deviations, for each axis, of a translation
+// (m) and of a rotation (rad) about the middle of the part. 0: it is exact.
+struct PlacementDeviation {
+  double shift = 0, turn = 0;
+  bool IsExact() const { return shift == 0 && turn == 0; }
+};
+
 struct RecordedGrip {
   Region region;
   GripMotion motion = GripMotion::kFollowsScan;
   AxisSet axes = AxisSet::All();  // along which it is held; all unless it is kGiven
   bool deforms = false;  // whether it may deform instead of moving as a rigid body; not kGiven
   std::vector<std::string> markers;  // kFollowsMarkers
+  PlacementDeviation placement = {};
 
   // kGiven: k poses relative to the undeformed place. The grip is rotated about `pivot`, from the
   // first rotation to that of the pose, and then displaced.
@@ -40,6 +48,13 @@ struct RecordedGrip {
 // The rigid motion of a grip of motion kGiven from its undeformed place. Between the given times it
 // is interpolated smoothly (time_series.h), because a path with corners would excite vibrations.
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time);
+
+// Reads `placement: {shift_deviation: 1 mm, turn_deviation: 1 deg}` of a held part, of which at
+// least one must be above 0; without it the placement is exact. The part must be held along all
+// axes. Throws InputError.
+PlacementDeviation ReadPlacement(const Config& config, AxisSet axes);
+// Adds the placement to an item of `fixed` or `gripped`, unless it is exact.
+std::string WithPlacement(std::string mapping, const PlacementDeviation& placement);
 
 // Reads the items of `gripped`: each a region (region.h) and one of
 //   follows: scan                     the default

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "scan/time_span.h"
 
 namespace lacuna {
@@ -10,7 +12,9 @@ std::vector<RecordedSupport> ReadSupports(const Config& config, const DataLocati
   std::vector<RecordedSupport> supports;
   for (const Config& item : config.Items("fixed")) {
     const std::string name = fmt::format("fixed {}", supports.size() + 1);
-    supports.push_back({ReadRegion(item, data.folder, name), ReadDirections(item)});
+    RecordedSupport support{ReadRegion(item, data.folder, name), ReadDirections(item)};
+    support.placement = ReadPlacement(item, support.axes);
+    supports.push_back(std::move(support));
   }
   return supports;
 }
@@ -21,7 +25,8 @@ std::string DescribeSupport(const RecordedSupport& support) {
 }
 
 std::string WriteSupport(const RecordedSupport& support) {
-  return WithDirections(FormatRegion(support.region), support.axes);
+  return WithPlacement(WithDirections(FormatRegion(support.region), support.axes),
+                       support.placement);
 }
 
 std::vector<Region> RegionsOf(const RecordedObject& object) {
@@ -39,7 +44,7 @@ std::vector<std::filesystem::path> FilesOf(const RecordedObject& object) {
     if (!file.empty()) files.push_back(file);
   };
   for (const Region& region : RegionsOf(object))
-    if (const auto* listed = std::get_if<NodeRegion>(&region.shape)) add(listed->file);
+    if (const auto* listed = std::get_if<NodeRegion>(&region.shape)) add(listed->file.file);
   for (const RecordedGrip& grip : object.grips) add(grip.file);
   for (const MeasuredForce& force : object.forces) add(force.file);
   for (const MeasuredReaction& reaction : object.reactions) add(reaction.file);
@@ -58,6 +63,13 @@ std::vector<AxisSet> HeldAxesOfParts(const RecordedObject& object) {
   for (const RecordedSupport& support : object.fixed) axes.push_back(support.axes);
   for (const RecordedGrip& grip : object.grips) axes.push_back(grip.axes);
   return axes;
+}
+
+std::vector<PlacementDeviation> PlacementDeviationsOfParts(const RecordedObject& object) {
+  std::vector<PlacementDeviation> placements;
+  for (const RecordedSupport& support : object.fixed) placements.push_back(support.placement);
+  for (const RecordedGrip& grip : object.grips) placements.push_back(grip.placement);
+  return placements;
 }
 
 std::vector<std::string> DoubtsOfObject(const RecordedObject& object, double first, double last) {

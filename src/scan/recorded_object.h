@@ -22,6 +22,7 @@ namespace lacuna {
 struct RecordedSupport {
   Region region;
   AxisSet axes = AxisSet::All();
+  PlacementDeviation placement = {};
 };
 
 struct RecordedObject {
@@ -34,7 +35,8 @@ struct RecordedObject {
 };
 
 // Reads the items of `fixed`: each a region (region.h) and optionally `directions: [x, y]`, the
-// axes along which it cannot move. Throws InputError (file, line, column and field).
+// axes along which it cannot move, and `placement`. Throws InputError (file, line, column and
+// field).
 std::vector<RecordedSupport> ReadSupports(const Config& config, const DataLocation& data);
 
 // What `lacuna info` says about a support, and the support as an item of `fixed` in recording.yaml.
@@ -44,10 +46,11 @@ std::string WriteSupport(const RecordedSupport& support);
 // The regions that the object has: of the parts that are held, and where forces act.
 std::vector<Region> RegionsOf(const RecordedObject& object);
 
-// The names of the held parts, and the axes along which they are held: the fixed regions, then the
-// gripped ones.
+// The names of the held parts, the axes along which they are held, and how well their placement is
+// known: the fixed regions, then the gripped ones.
 std::vector<std::string> HeldParts(const RecordedObject& object);
 std::vector<AxisSet> HeldAxesOfParts(const RecordedObject& object);
+std::vector<PlacementDeviation> PlacementDeviationsOfParts(const RecordedObject& object);
 
 // The files that the object's regions, paths, forces and reactions were read from.
 std::vector<std::filesystem::path> FilesOf(const RecordedObject& object);

@@ -84,6 +84,15 @@ std::vector<InfoLine> DescribeObject(const Recording& recording) {
 
 }  // namespace
 
+void AddFileOf(const Region& region, Recording* recording) {
+  const auto* listed = std::get_if<NodeRegion>(&region.shape);
+  if (listed == nullptr || listed->file.file.empty()) return;
+  const bool is_known =
+      std::any_of(recording->files.begin(), recording->files.end(),
+                  [&](const FileState& known) { return known.file == listed->file.file; });
+  if (!is_known) recording->files.push_back(listed->file);
+}
+
 Frame LoadFrame(const Recording& recording, int i) {
   CHECK(i >= 0 && i < recording.FrameCount()) << "frame " << i;
   Frame frame;

@@ -40,8 +40,9 @@ struct Recording {
   std::vector<std::string> warnings;  // e.g. a size that suggests another length unit
   std::string resolved;               // all values read, defaults included, SI, as JSON
 
-  // All files that the recording consists of, recording.yaml included, each once, in their states
-  // before they were read. A hash over them changes whenever the recording does.
+  // All files that the recording consists of, recording.yaml included, and those that AddFileOf
+  // adds; each once, in their states before they were read. A hash over them changes whenever the
+  // recording does.
   std::vector<FileState> files;
 
   int FrameCount() const { return static_cast<int>(times.size()); }
@@ -50,6 +51,11 @@ struct Recording {
 // `path` is a recording.yaml or the folder that contains one. Checks that every file exists and
 // reads the first frame. Throws InputError naming file, line, column and field, or file and frame.
 Recording LoadRecording(const std::filesystem::path& path);
+
+// Adds the file that lists a region's nodes to Recording::files, in the state that it had before it
+// was read. For regions that an experiment describes beside the recording. Does nothing if the
+// region has no file or the file is listed already.
+void AddFileOf(const Region& region, Recording* recording);
 
 // Reads frame i in [0, FrameCount()). Points that are not finite are dropped and counted. Throws
 // InputError naming file and frame when the file is absent, truncated or malformed, when fewer than

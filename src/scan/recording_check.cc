@@ -86,7 +86,8 @@ void AddDoubtfulTables(const Recording& recording, std::vector<std::string>* fin
 
 }  // namespace
 
-std::vector<std::string> ExamineFrames(const Recording& recording, int64_t most_points) {
+std::vector<std::string> ExamineFrames(const Recording& recording, int64_t most_points,
+                                       const std::function<void(const Frame&)>& also) {
   std::vector<std::string> findings;
   const bool shows_surface =
       std::visit([](const auto& source) { return ShowsSurface(source); }, recording.frames);
@@ -102,6 +103,7 @@ std::vector<std::string> ExamineFrames(const Recording& recording, int64_t most_
     if (i > 0 && AreEqual(frame, before)) repeats.push_back(i);
     if (i > 0 && frame.repeated_count > 0) with_repeated_points.push_back(i);
     if (shows_surface) components.Add(frame);
+    if (also) also(frame);
     before = std::move(frame);
   }
   AddRepeats(repeats, i, &findings);

@@ -3,6 +3,7 @@
 #define LACUNA_SCAN_RECORDING_CHECK_H_
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -14,10 +15,12 @@ namespace lacuna {
 // Sentences about frames that repeat the one before exactly, about small components beside the
 // object in scans and meshes, about points that repeat within later frames, and about tables of
 // loads and paths whose first line is doubtful. Reads the frames one after the other until
-// `most_points` rows have been read, and says if it stopped there. Throws InputError when a frame
+// `most_points` rows have been read, and says if it stopped there. Each frame that is read is given
+// to `also`, for examinations that need more than this module. Throws InputError when a frame
 // cannot be read, and Interrupted.
 std::vector<std::string> ExamineFrames(const Recording& recording,
-                                       int64_t most_points = std::numeric_limits<int64_t>::max());
+                                       int64_t most_points = std::numeric_limits<int64_t>::max(),
+                                       const std::function<void(const Frame&)>& also = {});
 
 }  // namespace lacuna
 

@@ -98,8 +98,8 @@ Region ReadRegion(const Config& config, const std::filesystem::path& data_folder
     ++shapes;
   }
   if (config.Has("nodes_file")) {
-    const std::filesystem::path file = data_folder / config.Text("nodes_file");
-    region.shape = NodeRegion{ReadNodeFile(file), file};
+    const FileState file = StateOf(data_folder / config.Text("nodes_file"));
+    region.shape = NodeRegion{ReadNodeFile(file.file), file};
     ++shapes;
   }
   if (shapes != 1) {

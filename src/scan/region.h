@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/config.h"
+#include "core/file_state.h"
 #include "geometry/axis_set.h"
 
 namespace lacuna {
@@ -30,8 +31,10 @@ struct HalfSpaceRegion {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit length
 };
 struct NodeRegion {
-  std::vector<int> nodes;      // nodes of the reference mesh, from 0, ascending, no duplicates
-  std::filesystem::path file;  // file that lists them; empty if recording.yaml does
+  std::vector<int> nodes;  // nodes of the reference mesh, from 0, ascending, no duplicates
+  // The file that lists them, in its state before it was read; an empty path if the YAML lists
+  // them.
+  FileState file = {};
 };
 
 struct Region {

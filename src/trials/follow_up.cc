@@ -20,6 +20,7 @@
 #include "scan/marker_frames.h"
 #include "scan/random_bits.h"
 #include "scan/recorded_grip.h"
+#include "trials/trial_load_cell.h"
 #include "trials/trial_recording.h"
 #include "trials/trial_simulation.h"
 
@@ -105,13 +106,15 @@ FollowUp Follow(const PlannedCase& planned, const PlannedOutcome& outcome, int n
   size_t changed = 0;
   while (study.recordings.at(changed).name != protocol.recording) ++changed;
   const PlannedRecording recording = PlanRecording(protocol, study, planned.fitted.mesh);
-  const Markers seen = RecordTruth(planned.trial, protocol, recording,
-                                   planned.trial.hold_forces.at(changed), number);
+  const TrueRecording seen = RecordTruth(planned.trial, protocol, recording,
+                                         planned.trial.hold_forces.at(changed), number);
   WritePlannedExperiment(planned.fitted, planned.time_step, protocol, folder);
   // As docs/plan.md tells the user: what was measured replaces what was predicted.
   fs::remove_all(folder / "measured");
   fs::copy(folder / "predicted", folder / "measured");
-  WriteMarkerFrames(folder / "measured", recording.item.recording.times, seen);
+  WriteMarkerFrames(folder / "measured", recording.item.recording.times, seen.markers);
+  // Its only reading, which recording.yaml describes already.
+  if (seen.reading) WriteReaction(folder / "measured", *seen.reading, 1);
   made.outcome = RunCase(own, folder / "experiment.yaml", folder);
   SaveOutcome(made.outcome, folder / "outcome.json");
   return made;
@@ -161,17 +164,20 @@ void Count(const TrialCase& trial, const FollowUp& made, FollowUpTally* tally) {
 
 }  // namespace
 
-Markers RecordTruth(const TrialCase& trial, const Protocol& protocol,
-                    const PlannedRecording& planned, const Eigen::Vector3d& hold_force, int number,
-                    bool rough) {
+TrueRecording RecordTruth(const TrialCase& trial, const Protocol& protocol,
+                          const PlannedRecording& planned, const Eigen::Vector3d& hold_force,
+                          int number, bool rough) {
   const RecordedGrip& clamp = planned.item.recording.object.grips.at(0);
-  const TrialProcedure procedure{planned.item.recording.times,
-                                 [&](double time) { return MotionAt(clamp, time); },
-                                 PlannedHoldForce(protocol, hold_force), protocol.weight};
-  Markers markers = planned.item.recording.markers;
-  markers.positions = SeenMarkers(trial, number, SimulateTruth(trial, procedure, rough),
-                                  TruePlaces(trial, markers));
-  return markers;
+  const std::vector<double>& times = planned.item.recording.times;
+  const TrialProcedure procedure{times, [&](double time) { return MotionAt(clamp, time); },
+                                 PlannedHoldForce(protocol, hold_force), protocol.weight,
+                                 CellTimes(trial, number, times)};
+  const TrueMotion motion = SimulateTruth(trial, procedure, rough);
+  TrueRecording recorded{planned.item.recording.markers, {}};
+  Markers& markers = recorded.markers;
+  markers.positions = SeenMarkers(trial, number, motion, TruePlaces(trial, markers));
+  if (trial.load_cell) recorded.reading = CellReading(trial, number, times, motion.forces);
+  return recorded;
 }
 
 bool IsOpen(const TrialCase& trial, const TrialOutcome& outcome) {

@@ -16,6 +16,7 @@
 
 #include "plan/planned_recording.h"
 #include "scan/marker_tracks.h"
+#include "scan/measured_reaction.h"
 #include "trials/trial_case.h"
 #include "trials/trial_run.h"
 
@@ -37,13 +38,17 @@ struct CaseFollowUps {
   std::optional<FollowUp> best, random;
 };
 
-// The markers of the planned recording, which is a variant of one of the case's recordings that the
-// hand held with `hold_force` (N), as the true bar moves them, with noise. `number` draws the
-// noise; `rough` as for SimulateTruth(). Throws InputError where the true motion cannot be
-// simulated.
-Markers RecordTruth(const TrialCase& trial, const Protocol& protocol,
-                    const PlannedRecording& planned, const Eigen::Vector3d& hold_force, int number,
-                    bool rough = false);
+// The planned recording, which is a variant of one of the case's recordings that the hand held with
+// `hold_force` (N), as the true bar shows it: the markers, and the reading of the load cell where
+// the case has one, with noise. `number` draws the noise; `rough` as for SimulateTruth(). Throws
+// InputError where the true motion cannot be simulated.
+struct TrueRecording {
+  Markers markers;
+  std::optional<MeasuredReaction> reading;
+};
+TrueRecording RecordTruth(const TrialCase& trial, const Protocol& protocol,
+                          const PlannedRecording& planned, const Eigen::Vector3d& hold_force,
+                          int number, bool rough = false);
 
 // Whether a case with one hidden effect, seen by markers, was left open: the verdict is
 // "ambiguous", "no power" or "adequate".

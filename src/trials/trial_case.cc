@@ -45,7 +45,7 @@ void SetVector(const std::string& name, const Eigen::Vector3d& vector,
 
 // The streams of draws of a case, and the number of the first draw of an axis among those of a
 // hidden effect. The numbers before it belong to the place (0) and to the cards' settings (1 to 5).
-constexpr uint64_t kCaseStream = 1, kHiddenStream = 2;
+constexpr uint64_t kCaseStream = 1, kHiddenStream = 2, kLoadCellStream = 3;
 constexpr uint64_t kAxisDraw = 6;
 
 // Sets the parameter if its card says how trials choose it.
@@ -162,6 +162,17 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
   return trial;
 }
 
+std::optional<TrialLoadCell> DrawLoadCell(uint64_t seed, double share) {
+  Draws draws(seed, kLoadCellStream);
+  if (!(draws.Between(0, 1) < share)) return std::nullopt;
+  // The bar weighs about 0.3 N, and the hand pulls with 0.1 N.
+  TrialLoadCell cell;
+  cell.deviation = draws.LogBetween(0.002, 0.02);
+  cell.tare_deviation = 0.05;
+  cell.delay_deviation = 0.002;  // a fifth of the time between two frames
+  return cell;
+}
+
 HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_t seed) {
   Draws draws(seed, kHiddenStream);
   HiddenEffect hidden;
@@ -212,27 +223,31 @@ std::string TextOfCase(const TrialCase& trial) {
   for (const ModelledEffect& effect : trial.modelled)
     modelled.push_back(
         {{"type", effect.type}, {"parameters", effect.parameters}, {"starts", effect.starts}});
-  const nlohmann::json all = {{"schema_version", 1},
-                              {"name", trial.name},
-                              {"group", trial.group},
-                              {"seed", trial.seed},
-                              {"recordings", trial.recordings},
-                              {"is_scanned", trial.is_scanned},
-                              {"nuisance", trial.nuisance},
-                              {"hidden", hidden},
-                              {"modelled", modelled},
-                              {"young_modulus", trial.young_modulus},
-                              {"poisson_ratio", trial.poisson_ratio},
-                              {"damping", trial.damping},
-                              {"size", ToJson(trial.size)},
-                              {"true_size", ToJson(trial.true_size)},
-                              {"element_volume", trial.element_volume},
-                              {"true_element_volume", trial.true_element_volume},
-                              {"true_step", trial.true_step},
-                              {"clamp_error", trial.clamp_error},
-                              {"hold_forces", forces},
-                              {"noise", trial.noise},
-                              {"noise_correlation_time", trial.noise_correlation_time}};
+  nlohmann::json all = {{"schema_version", 1},
+                        {"name", trial.name},
+                        {"group", trial.group},
+                        {"seed", trial.seed},
+                        {"recordings", trial.recordings},
+                        {"is_scanned", trial.is_scanned},
+                        {"nuisance", trial.nuisance},
+                        {"hidden", hidden},
+                        {"modelled", modelled},
+                        {"young_modulus", trial.young_modulus},
+                        {"poisson_ratio", trial.poisson_ratio},
+                        {"damping", trial.damping},
+                        {"size", ToJson(trial.size)},
+                        {"true_size", ToJson(trial.true_size)},
+                        {"element_volume", trial.element_volume},
+                        {"true_element_volume", trial.true_element_volume},
+                        {"true_step", trial.true_step},
+                        {"clamp_error", trial.clamp_error},
+                        {"hold_forces", forces},
+                        {"noise", trial.noise},
+                        {"noise_correlation_time", trial.noise_correlation_time}};
+  if (trial.load_cell)
+    all["load_cell"] = {{"deviation", trial.load_cell->deviation},
+                        {"tare_deviation", trial.load_cell->tare_deviation},
+                        {"delay_deviation", trial.load_cell->delay_deviation}};
   return all.dump(2) + "\n";
 }
 
@@ -273,6 +288,12 @@ TrialCase LoadCase(const std::filesystem::path& file) {
     for (const auto& force : json.at("hold_forces")) trial.hold_forces.push_back(VectorOf(force));
     trial.noise = json.at("noise");
     trial.noise_correlation_time = json.at("noise_correlation_time");
+    if (json.contains("load_cell")) {
+      const auto& cell = json.at("load_cell");
+      trial.load_cell =
+          TrialLoadCell{cell.at("deviation").get<double>(), cell.at("tare_deviation").get<double>(),
+                        cell.at("delay_deviation").get<double>()};
+    }
     return trial;
   } catch (const nlohmann::json::exception& problem) {
     throw InputError(fmt::format("{}: {}", file.string(), problem.what()));
@@ -287,6 +308,10 @@ std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder) 
     if (std::filesystem::exists(entry.path() / "truth.json")) cases.push_back(entry.path());
   std::sort(cases.begin(), cases.end());
   return cases;
+}
+
+double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j) {
+  return Normal(RandomBits({trial.seed, stream, i, j}));
 }
 
 }  // namespace lacuna

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,14 @@ struct TrialPrior {
   bool log_scale = false;
 };
 
+// A load cell that measures the force of the clamp. Its offset and its delay are drawn for each
+// recording from the priors with which they are fitted (trials/trial_load_cell.h).
+struct TrialLoadCell {
+  double deviation = 0;        // N, σ of the noise of one component
+  double tare_deviation = 0;   // N, σ of the offset of one component
+  double delay_deviation = 0;  // s, σ of the delay
+};
+
 struct TrialCase {
   std::string name;
   // "control", "hard_control", "one_effect", "pair", "removed" or "intervals". A removed effect is
@@ -66,6 +75,7 @@ struct TrialCase {
   std::vector<HiddenEffect> hidden;
   std::vector<ModelledEffect> modelled;
   std::vector<TrialPrior> priors;  // of the fit, where it has any; not in truth.json
+  std::optional<TrialLoadCell> load_cell;
 
   // The following values are drawn from the seed.
   double young_modulus = 1e5, poisson_ratio = 0.42;  // Pa, –
@@ -91,6 +101,10 @@ struct TrialCase {
 TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t seed, int recordings,
                    bool is_scanned, const std::string& nuisance);
 
+// Draws whether a case of this seed has a load cell, with the probability `share`, and its noise.
+// Its numbers are drawn apart from all others, which do not depend on it.
+std::optional<TrialLoadCell> DrawLoadCell(uint64_t seed, double share);
+
 // Draws the place, direction and times of an effect from the seed, as its card prescribes. Its size
 // is 1 unit of its parameter, with a plausible sign; the caller scales it. A plane of contact
 // stands beside the bar, on the side to which it swings. `type` must be in the catalogue.
@@ -105,6 +119,10 @@ TrialCase LoadCase(const std::filesystem::path& file);
 // The folders of the cases of a suite, sorted by name. Throws InputError if the suite has no
 // folder.
 std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder);
+
+// Number (i, j) of a stream of standard normal draws; it depends on the seed of the case and on
+// these three numbers alone.
+double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j);
 
 }  // namespace lacuna
 

@@ -12,6 +12,7 @@
 #include "scan/random_bits.h"
 #include "scan/scan_writer.h"
 #include "trials/clamp_motion.h"
+#include "trials/trial_load_cell.h"
 
 namespace lacuna {
 namespace {
@@ -74,14 +75,20 @@ void WriteClampPath(int recording, const std::filesystem::path& file) {
   WriteFileAtomically(file, path);
 }
 
-// The part of recording.yaml that describes the shape and the clamp.
-std::string ShapeAndClamp() {
+// The part of recording.yaml that describes the shape and the clamp, with its load cell, whose
+// readings are written.
+std::string ShapeAndClamp(const TrialCase& trial, int recording, const TrueMotion& motion,
+                          const std::filesystem::path& folder) {
+  std::string cell;
+  if (trial.load_cell)
+    cell = ", " +
+           WriteReaction(folder, CellReading(trial, recording, StampedTimes(), motion.forces), 1);
   return fmt::format(
       "gripped:\n  - {{name: clamp, half_space: {{point: [{} m, 0 m, 0 m], normal: [-1, 0, 0]}}, "
       "path: {{file: clamp.csv, time: t, x: x, y: y, z: z, turn: {{x: rx, y: ry, z: rz, about: [0, "
-      "0, 0]}}}}}}\n"
+      "0, 0]}}}}{}}}\n"
       "reference: {{from: mesh, file: box.off}}\n",
-      kTrialFace);
+      kTrialFace, cell);
 }
 
 void WriteMarkers(const TrialCase& trial, int recording, const TrueMotion& motion,
@@ -89,9 +96,6 @@ void WriteMarkers(const TrialCase& trial, int recording, const TrueMotion& motio
   std::vector<Eigen::Matrix3Xd> frames =
       SeenMarkers(trial, recording, motion, MarkerPlaces(trial.true_size));
   SpoilFrame(trial, recording, &frames);
-  std::vector<double> times;
-  for (size_t f = 0; f < frames.size(); ++f)
-    times.push_back(kTrialSpacing * static_cast<double>(f));
   Markers markers{{}, MarkerPlaces(trial.size), frames};
   for (int m = 0; m < kMarkers; ++m) {
     markers.names.push_back(fmt::format("m{}", m));
@@ -99,8 +103,9 @@ void WriteMarkers(const TrialCase& trial, int recording, const TrueMotion& motio
   }
   const std::string yaml = fmt::format(
       "schema_version: 1\nname: recording {}\nlength_unit: m\ndensity: {} kg/m^3\nframes:\n{}",
-      recording + 1, kTrialDensity, WriteMarkerFrames(folder, times, markers));
-  WriteFileAtomically(folder / "recording.yaml", yaml + ShapeAndClamp());
+      recording + 1, kTrialDensity, WriteMarkerFrames(folder, StampedTimes(), markers));
+  WriteFileAtomically(folder / "recording.yaml",
+                      yaml + ShapeAndClamp(trial, recording, motion, folder));
 }
 
 void WriteScans(const TrialCase& trial, int recording, const TrueMotion& motion,
@@ -108,11 +113,8 @@ void WriteScans(const TrialCase& trial, int recording, const TrueMotion& motion,
   std::vector<Eigen::Matrix3Xd> frames = motion.positions;
   SpoilFrame(trial, recording, &frames);
   std::vector<TriMesh> surfaces;
-  std::vector<double> times;
-  for (size_t f = 0; f < frames.size(); ++f) {
-    surfaces.push_back(BoundaryAt(motion.body->boundary, frames[f]));
-    times.push_back(kTrialSpacing * static_cast<double>(f));
-  }
+  for (const Eigen::Matrix3Xd& nodes : frames)
+    surfaces.push_back(BoundaryAt(motion.body->boundary, nodes));
   CameraRing ring;
   ring.center = {0.5 * trial.size[0], 0, 0};
   ring.up = Eigen::Vector3d::UnitX();  // so that both ends are visible
@@ -127,16 +129,19 @@ void WriteScans(const TrialCase& trial, int recording, const TrueMotion& motion,
   RecordedObject object;
   object.density = kTrialDensity;
   WriteScan(folder, fmt::format("recording {}", recording + 1), object,
-            {surfaces, times, PlaceCameras(ring), scanner}, WritePointFrames);
+            {surfaces, StampedTimes(), PlaceCameras(ring), scanner}, WritePointFrames);
   std::filesystem::remove_all(folder / "truth");
   const std::filesystem::path description = folder / "recording.yaml";
-  WriteFileAtomically(description, ReadWholeFile(description) + ShapeAndClamp());
+  WriteFileAtomically(description,
+                      ReadWholeFile(description) + ShapeAndClamp(trial, recording, motion, folder));
 }
 
 }  // namespace
 
-double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j) {
-  return Normal(RandomBits({trial.seed, stream, i, j}));
+std::vector<double> StampedTimes() {
+  std::vector<double> times;
+  for (int f = 0; f < kTrialFrames; ++f) times.push_back(kTrialSpacing * f);
+  return times;
 }
 
 Eigen::Matrix3Xd MarkerPlaces(const Eigen::Vector3d& size) {

@@ -26,6 +26,7 @@ inline constexpr double kTrialShapeError = 2e-4;  // m: shape deviation for a si
 struct TrueMotion {
   std::shared_ptr<const Body> body;
   std::vector<Eigen::Matrix3Xd> positions;  // for each frame: 3 × nodes, m
+  Eigen::Matrix3Xd forces;  // 3 × cell times (TrialProcedure), N, of the clamp on the bar
 };
 
 // The places of the eight markers on the surface of a bar of this size: 3 × markers, m.
@@ -39,9 +40,8 @@ Eigen::Vector3d PlaceError(const TrialCase& trial, Eigen::Index marker);
 std::vector<Eigen::Matrix3Xd> SeenMarkers(const TrialCase& trial, int recording,
                                           const TrueMotion& motion, const Eigen::Matrix3Xd& places);
 
-// Number (i, j) of a stream of standard normal draws; it depends on the seed of the case and on
-// these three numbers alone.
-double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j);
+// The times with which the frames of a case's own recordings are stamped, s.
+std::vector<double> StampedTimes();
 
 // Writes recording.yaml and all files that it refers to into the folder. `recording` is 0 or 1.
 // Throws InputError if a file cannot be written.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/median.h"
 #include "trials/trial_case.h"
 #include "trials/trial_run.h"
 
@@ -16,10 +17,8 @@ namespace {
 constexpr double kAtNoise = 1.2;
 constexpr double kWithin = 0.15;
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
+double MedianOrZero(const std::vector<double>& values) {
+  return values.empty() ? 0 : Median(values);
 }
 
 std::string GroupOf(const TrialCase& trial) {
@@ -99,8 +98,8 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
   report.rates = RatesOf(finished);
   report.follow_ups = ReportFollowUps(folder);
   for (auto& [group, tally] : tallies) {
-    tally.median_before = Median(before[group]);
-    tally.median_after = Median(after[group]);
+    tally.median_before = MedianOrZero(before[group]);
+    tally.median_after = MedianOrZero(after[group]);
     report.tallies.push_back(tally);
   }
   return report;

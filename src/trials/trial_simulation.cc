@@ -17,7 +17,9 @@
 #include "fem/prescribed_force.h"
 #include "geometry/rounded_box.h"
 #include "meshing/tetrahedralize.h"
+#include "prediction/reading_times.h"
 #include "trials/clamp_motion.h"
+#include "trials/trial_load_cell.h"
 #include "trials/trial_recording.h"
 
 namespace lacuna {
@@ -73,7 +75,9 @@ std::vector<double> FrameTimes(const TrialCase& trial, int recording) {
 TrialProcedure ProcedureOf(const TrialCase& trial, int recording) {
   return {FrameTimes(trial, recording),
           [recording](double time) { return ClampMotionAt(recording, time).Place(); },
-          trial.hold_forces[static_cast<size_t>(recording)]};
+          trial.hold_forces[static_cast<size_t>(recording)],
+          {},
+          CellTimes(trial, recording, StampedTimes())};
 }
 
 // The entry of a parameter under fit.parameters.
@@ -125,10 +129,17 @@ TrueMotion SimulateTruth(const TrialCase& trial, const TrialProcedure& procedure
     options.held_force.segment<3>(3 * i) = share[i] * procedure.hold_force;
   if (const Eigen::Matrix3Xd moved = procedure.clamp(kRelease) * nodes; moved != nodes)
     options.held_guess = moved.reshaped();
-  TrueMotion motion{model.body, {}};
+  if (!procedure.cell_times.empty()) options.reactions = {{0, std::nullopt}};
+  const std::vector<ReadingTime> visits = ReadingTimesOf(procedure.times, {procedure.cell_times});
+  TrueMotion motion{model.body, {}, {}};
+  motion.forces.resize(3, static_cast<Eigen::Index>(procedure.cell_times.size()));
   const PredictionSummary summary =
-      Predict(model, options, procedure.times, {}, [&](int, const PredictedState& state) {
-        motion.positions.emplace_back(state.position.reshaped(3, nodes.cols()));
+      Predict(model, options, TimesOf(visits), {}, [&](int index, const PredictedState& state) {
+        const ReadingTime& visit = visits[static_cast<size_t>(index)];
+        if (visit.shows_frame)
+          motion.positions.emplace_back(state.position.reshaped(3, nodes.cols()));
+        else
+          motion.forces.col(static_cast<Eigen::Index>(visit.frame)) = state.reaction;
       });
   if (!summary.IsUsable())
     throw InputError(

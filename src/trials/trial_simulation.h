@@ -25,6 +25,7 @@ struct TrialProcedure {
   std::function<Eigen::Isometry3d(double)> clamp;  // its motion from its undeformed place, time s
   Eigen::Vector3d hold_force = Eigen::Vector3d::Zero();  // N, of the hand until the release
   std::optional<Protocol::Weight> weight = {};           // fixed to the bar
+  std::vector<double> cell_times = {};  // s, ascending, at which the force of the clamp is wanted
 };
 
 // The motion of the true bar. With `rough` it has elements and time steps like those of the model.

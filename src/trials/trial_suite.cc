@@ -25,6 +25,7 @@
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
 #include "scan/random_bits.h"
+#include "trials/trial_load_cell.h"
 #include "trials/trial_simulation.h"
 
 namespace lacuna {
@@ -57,8 +58,10 @@ TrialCase EffectCase(const TrialSuite& suite, const std::string& group,
 TrialCase DrawnAgain(const TrialCase& trial) {
   std::vector<std::string> types;
   for (const HiddenEffect& hidden : trial.hidden) types.push_back(hidden.type);
-  return DrawEffectCase(trial.name, trial.group, types, trial.hidden.front().factor,
-                        trial.recordings, trial.is_scanned, RandomBits({trial.seed, 1}));
+  TrialCase again = DrawEffectCase(trial.name, trial.group, types, trial.hidden.front().factor,
+                                   trial.recordings, trial.is_scanned, RandomBits({trial.seed, 1}));
+  if (trial.load_cell) again.load_cell = DrawLoadCell(again.seed, 1);
+  return again;
 }
 
 // The change of the residuals, m, that the hidden effect causes at the size that was drawn.
@@ -83,9 +86,13 @@ Eigen::VectorXd TrueValues(const TrialCase& trial, const TrialCase& without,
   values[1] = trial.poisson_ratio;
   const Eigen::Index of_body = static_cast<Eigen::Index>(study.fitted.size());
   if (!without.Hides(StiffnessDampingCard().type)) values[2] = trial.damping;
-  for (size_t r = 0; r < trial.hold_forces.size(); ++r)
-    values.segment<3>(of_body + 3 * static_cast<Eigen::Index>(r)) = trial.hold_forces[r];
-  CHECK_EQ(values.size(), of_body + 3 * trial.recordings);
+  const Eigen::Index of_recording = trial.load_cell ? 4 : 3;
+  CHECK_EQ(values.size(), of_body + of_recording * trial.recordings);
+  for (int r = 0; r < trial.recordings; ++r) {
+    auto own = values.segment(of_body + of_recording * r, of_recording);
+    own.head<3>() = trial.hold_forces[static_cast<size_t>(r)];
+    if (trial.load_cell) own[3] = CellDelay(trial, r);
+  }
   return values;
 }
 
@@ -231,6 +238,7 @@ TrialSuite ReadTrialSuite(const Config& config) {
   suite.controls = config.Integer("controls", 0, kMost, 0);
   suite.hard_controls = config.Integer("hard_controls", 0, kMost, 0);
   suite.pairs = config.Integer("pairs", 0, kMost, 0);
+  suite.load_cells = config.Number("load_cells", Bounds{0, 1}, 0);
   suite.is_scanned =
       config.Choice<bool>("seen_by", {{"markers", false}, {"scanner", true}}, "markers");
   suite.effects = ReadEffectTypes(config, "effects");
@@ -273,6 +281,10 @@ std::vector<TrialCase> CasesOf(const TrialSuite& suite) {
     for (const std::string& type : suite.effects)
       for (const int recordings : suite.recordings)
         cases.push_back(EffectCase(suite, "one_effect", {type}, factor, recordings, cases.size()));
+  for (TrialCase& trial : cases) {
+    trial.load_cell = DrawLoadCell(trial.seed, suite.load_cells);
+    if (trial.load_cell) trial.name += "-cell";
+  }
   return cases;
 }
 

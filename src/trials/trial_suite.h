@@ -25,6 +25,9 @@ struct TrialSuite {
   bool is_scanned = false;              // observed by depth cameras instead of markers
   std::vector<std::string> removed;     // hidden at the largest factor and removed from the library
   int pairs = 0;                        // number of cases with two effects, at the largest factor
+  // The probability that the clamp of a case has a load cell. 0: there is none, and the cases are
+  // those of a suite without this key.
+  double load_cells = 0;
 };
 // The types of effects listed under the key; none if it is absent. Throws InputError for an effect
 // that the catalogue does not have.

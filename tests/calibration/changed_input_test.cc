@@ -12,23 +12,44 @@
 namespace lacuna {
 namespace {
 
-TEST(ChangedInput, IsNotFittedUnderTheHashOfItsNewContent) {
-  const TemporaryFolder folder;
+void WriteMovingBar(const std::filesystem::path& folder) {
   Eigen::Matrix3Xd moved = BarMarkerPlaces();
   moved.row(1).array() += 0.003;
   std::vector<Eigen::Matrix3Xd> frames(kFrames, BarMarkerPlaces());
   frames[kFrames / 3] = moved;
-  WriteBarRecording(folder.Path(), frames);
-  PredictionStudy study = ReadBarStudy(folder.Path());
+  WriteBarRecording(folder, frames);
+}
+
+// Appends to the file of this name in the folder, which the study was read from, and expects that
+// the study is then refused.
+void ExpectRefusedAfterAChange(PredictionStudy study, const TemporaryFolder& folder,
+                               const std::string& name) {
   study.output = folder / "run";
-  std::ofstream(folder / "markers.csv", std::ios::app) << "\n";
+  std::ofstream(folder / name, std::ios::app) << "\n";
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
   EXPECT_THAT([&] { RunCalibration(study, &progress); },
-              testing::ThrowsMessage<InputError>(testing::AllOf(
-                  testing::HasSubstr("markers.csv"), testing::HasSubstr("has changed"))));
+              testing::ThrowsMessage<InputError>(
+                  testing::AllOf(testing::HasSubstr(name), testing::HasSubstr("has changed"))));
   EXPECT_FALSE(std::filesystem::exists(folder / "run/manifest.json"));
+}
+
+TEST(ChangedInput, IsNotFittedUnderTheHashOfItsNewContent) {
+  const TemporaryFolder folder;
+  WriteMovingBar(folder.Path());
+  ExpectRefusedAfterAChange(ReadBarStudy(folder.Path()), folder, "markers.csv");
+}
+
+// The experiment names the file, not the recording.
+TEST(ChangedInput, TheNodesOfAHoldAreAnInput) {
+  const TemporaryFolder folder;
+  WriteMovingBar(folder.Path());
+  std::ofstream(folder / "held_nodes.txt") << "1\n3\n";
+  const PredictionStudy study =
+      ReadBarStudy(folder.Path(), {{"{half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}",
+                                    "{nodes_file: held_nodes.txt}"}});
+  ExpectRefusedAfterAChange(study, folder, "held_nodes.txt");
 }
 
 }  // namespace

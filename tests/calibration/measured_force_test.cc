@@ -7,6 +7,7 @@
 
 #include "calibration/calibration_fits.h"
 #include "calibration/calibration_run.h"
+#include "calibration/data_shares.h"
 #include "calibration/held_out_misfit.h"
 #include "calibration/linear_misfit.h"
 #include "calibration/reaction_report.h"
@@ -65,7 +66,7 @@ TEST(MeasuredForce, DeterminesTheModulusOfABarThatIsStretched) {
   EXPECT_LT(jaw.held_out.rms_over_sigma, 3);  // the errors of modulus and tare included
   EXPECT_GT(jaw.held_out.rms, 0);
   // The motion of the markers hardly depends on the modulus.
-  EXPECT_GT(SharesOfForces(problem, fit.parameters).at(0), 0.999);
+  EXPECT_GT(SharesOfData(problem, fit.parameters).at(0).value().forces, 0.999);
 
   // A prediction that is known is not made again.
   const LinearisedMisfit known = problem.Linearise(fit.parameters, false);
@@ -85,7 +86,7 @@ TEST(MeasuredForce, WithoutItTheModulusScalesOut) {
   EXPECT_TRUE(verdict == ParameterEstimate::Verdict::kFlat ||
               verdict == ParameterEstimate::Verdict::kDead)
       << static_cast<int>(verdict);
-  EXPECT_TRUE(SharesOfForces(problem, fit.parameters).empty());
+  EXPECT_TRUE(SharesOfData(problem, fit.parameters).empty());
 }
 
 // The torque of a jaw that twists and pulls determines the modulus as its force does.
@@ -109,7 +110,7 @@ TEST(MeasuredTorque, DeterminesTheModulusOfABarThatIsTwisted) {
   const FittedReaction& jaw = misfits.at(0).reactions.at(0);
   EXPECT_TRUE(jaw.is_torque);
   EXPECT_LT(jaw.in_fit.rms_over_sigma, 1.5);
-  EXPECT_GT(SharesOfForces(problem, fit.parameters).at(0), 0.99);
+  EXPECT_GT(SharesOfData(problem, fit.parameters).at(0).value().forces, 0.99);
   EXPECT_TRUE(ReactionTable(problem, misfits, /*torques=*/false).empty());
   const CsvTable curve = ReactionTable(problem, misfits, /*torques=*/true);
   EXPECT_EQ(curve.at(6).name, "rotation_rad");
@@ -238,7 +239,7 @@ TEST(MeasuredForce, ARunKeepsItsErrorsAndItsCurve) {
   EXPECT_LT(jaw.deviation, 0.025);
   EXPECT_THAT(jaw.labels, testing::ElementsAre("along"));
   EXPECT_EQ(jaw.in_fit.rms, record.recordings[0].reactions.at(0).in_fit.rms);
-  EXPECT_GT(read.parameters.at(0).share_of_forces.value_or(0), 0.99);
+  EXPECT_GT(read.parameters.at(0).shares.value().forces, 0.99);
 
   const CsvTable curve = LoadCsv(folder / "run/calibration/reactions.csv");
   ASSERT_EQ(curve.size(), 9u);

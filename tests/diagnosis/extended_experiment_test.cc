@@ -129,6 +129,24 @@ TEST(ExtendedExperiment, ALawOfTheUsersOwnIsRankedAndAddedLikeTheCatalogues) {
   EXPECT_EQ(extended.candidates[0].name, "push");
 }
 
+// "bar: #2" would be a mapping and a comment without quotes.
+TEST(ExtendedExperiment, ANameIsReadBackWhateverCharactersItHolds) {
+  const TemporaryFolder folder;
+  const std::filesystem::path run = FitBar(folder.Path());
+  FittedRun fitted = OpenRun(run);
+  fitted.study.name = "bar: #2";
+  ScoredEffect scored;
+  const Body body = MakeBody(fitted.mesh, 1000);
+  for (const CandidateEffect& candidate :
+       MakeCandidates({body, fitted.study.effects, fitted.study.time_step, 0.25}))
+    if (candidate.type == "mass_damping") scored.candidate = candidate;
+  scored.score.size = Eigen::VectorXd::Constant(1, 2.5);
+  const PredictionStudy extended =
+      ReadPredictionStudy(Config::Load(WriteExtendedExperiment(fitted, run, scored)));
+  EXPECT_EQ(extended.name, "bar: #2+mass_damping");
+  EXPECT_EQ(extended.output.filename(), "bar: #2+mass_damping");
+}
+
 TEST(ExtendedExperiment, ARunFromTheExperimentsOwnFolderIsOpened) {
   // A relative path without a folder name is resolved too.
   const TemporaryFolder folder;

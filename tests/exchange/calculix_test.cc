@@ -9,23 +9,25 @@
 
 #include "exchange/cantilever.h"
 #include "exchange/inp_writer.h"
+#include "support/interrupted_call.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
 
-CalculixResult Exported(const Cantilever& bar) {
+CalculixResult Exported(const Cantilever& bar, InpDialect dialect = InpDialect::kCalculix) {
   TemporaryFolder folder;
   const PortableModel model = bar.Describe();
-  std::ofstream(folder / "model.inp") << InpText(model, InpDialect::kCalculix);
+  std::ofstream(folder / "model.inp") << InpText(model, dialect);
   const CalculixResult result =
       RunCalculix(folder / "model.inp", folder / "calculix", model.mesh.NodeCount(), model.frames);
   EXPECT_TRUE(result.IsUsable()) << result.message;
   return result;
 }
 
-DisplacementDifference Difference(const Cantilever& bar) {
-  const CalculixResult result = Exported(bar);
+DisplacementDifference Difference(const Cantilever& bar,
+                                  InpDialect dialect = InpDialect::kCalculix) {
+  const CalculixResult result = Exported(bar, dialect);
   if (!result.IsUsable()) return {0, 1, 1};
   const DisplacementDifference difference =
       CompareDisplacements(bar.Displacements(), result.displacement);
@@ -46,6 +48,13 @@ TEST(Calculix, SagsUnderGravityAsLacunaDoes) {
   const DisplacementDifference difference = Difference(bar);
   EXPECT_GT(difference.largest_displacement, 0.005);  // large rotations
   EXPECT_LT(difference.largest, 0.01);
+}
+
+// Then nothing differs; ccx prints seven digits.
+TEST(Calculix, SagsUnderPointMassesAsLacunaDoes) {
+  SKIP_WITHOUT_CALCULIX();
+  const Cantilever bar("st_venant_kirchhoff", {8, 2, 2}, 2);
+  EXPECT_LT(Difference(bar, InpDialect::kCalculixPointMasses).largest, 1e-5);
 }
 
 // For linear elements of the same shape, too: nodes are not mixed up.
@@ -212,6 +221,20 @@ TEST(Calculix, HoldsPartsAlongSomeAxesOnly) {
   const DisplacementDifference difference = Difference(bar);
   EXPECT_NEAR(difference.largest_displacement, 0.001, 1e-4);
   EXPECT_LT(difference.largest, 1e-5);  // ccx prints seven digits
+}
+
+// In place of ccx, a script that sleeps.
+[[noreturn]] void InterruptCalculix(const TemporaryFolder& folder) {
+  WriteNumberedScript(folder / "ccx", folder / "number", "exec /bin/sleep 60");
+  setenv("PATH", folder.Path().c_str(), 1);
+  std::ofstream(folder / "model.inp") << "*NODE\n";
+  ExitAfterInterruptedCall(folder / "number",
+                           [&] { RunCalculix(folder / "model.inp", folder / "calculix", 1, {}); });
+}
+
+TEST(CalculixDeathTest, IsEndedByAnInterrupt) {
+  const TemporaryFolder folder;
+  EXPECT_EXIT(InterruptCalculix(folder), ::testing::ExitedWithCode(0), "");
 }
 
 TEST(Calculix, SaysWhyItStopped) {

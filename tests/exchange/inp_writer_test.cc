@@ -1,6 +1,7 @@
 // The .inp file: node order, exact round trips, and what becomes of each part of the model.
 #include "exchange/inp_writer.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -119,6 +120,47 @@ TEST(InpWriter, ConvertsTheNeoHookeanLawAndABranch) {
   EXPECT_THAT(InpText(bar.Describe(), InpDialect::kAbaqus),
               HasSubstr("*HYPERELASTIC, NEO HOOKE, MODULI=LONG TERM\n17857.14285714, 1.2e-05\n"
                         "*VISCOELASTIC, TIME=PRONY\n0.25, 0.25, 0.04\n"));
+}
+
+// The weight of a node is a constant force, or a part of its amplitude where measured forces act.
+TEST(InpWriter, WritesPointMassesWithTheirWeights) {
+  const PortableModel model = LoadedCantilever("linear", 1).Describe();
+  const std::string text = InpText(model, InpDialect::kCalculixPointMasses);
+  EXPECT_THAT(text, Not(HasSubstr("GRAV")));
+  EXPECT_THAT(text, HasSubstr("*DENSITY\n1e-06\n"));
+  EXPECT_THAT(text,
+              HasSubstr(fmt::format("*ELEMENT, TYPE=MASS, ELSET=MASS_1\n{}, 1\n*MASS, "
+                                    "ELSET=MASS_1\n{}\n",
+                                    model.mesh.TetCount() + 1, InpNumber(model.node_mass[0]))));
+  const auto weight = [&](int node) { return InpNumber(-9.81 * model.node_mass[node]); };
+  const int free = 0, loaded = model.loads[0].part.nodes.front();
+  const size_t motion = text.find("** The motion");
+  ASSERT_NE(motion, std::string::npos);
+  EXPECT_THAT(text.substr(motion), HasSubstr(fmt::format("\n{}, 3, {}\n", free + 1, weight(free))));
+  EXPECT_THAT(text.substr(motion),
+              HasSubstr(fmt::format("*CLOAD, AMPLITUDE=F_NODE_{0}_Z\n{0}, 3, 1\n", loaded + 1)));
+  EXPECT_THAT(InpText(model, InpDialect::kCalculix), Not(HasSubstr("TYPE=MASS")));
+}
+
+// The weights of linear elements are the same, lumped or consistent.
+TEST(InpWriter, SaysWhereGravityAndDensityAreConverted) {
+  const auto kind = [](const PortableModel& model, InpDialect dialect, const std::string& part) {
+    for (const Counterpart& one : InpCounterparts(model, dialect))
+      if (one.part == part) return one.kind;
+    return Counterpart::Kind::kNone;
+  };
+  PortableModel linear = Cantilever("linear", {2, 1, 1}, 1).Describe();
+  const PortableModel quadratic = Cantilever("linear", {2, 1, 1}, 2).Describe();
+  for (const InpDialect dialect : {InpDialect::kCalculix, InpDialect::kAbaqus}) {
+    EXPECT_EQ(kind(linear, dialect, "gravity"), Counterpart::Kind::kExact);
+    EXPECT_EQ(kind(quadratic, dialect, "gravity"), Counterpart::Kind::kConverted);
+  }
+  const InpDialect lumped = InpDialect::kCalculixPointMasses;
+  EXPECT_EQ(kind(quadratic, lumped, "gravity"), Counterpart::Kind::kExact);
+  EXPECT_EQ(kind(linear, lumped, "density"), Counterpart::Kind::kNone);  // a part of the inertia
+  linear.is_static = true;
+  EXPECT_EQ(kind(linear, lumped, "density"), Counterpart::Kind::kConverted);
+  EXPECT_EQ(kind(linear, InpDialect::kCalculix, "density"), Counterpart::Kind::kNone);
 }
 
 TEST(InpWriter, MakesNamesOfSetsThatAreValidAndUnique) {

@@ -6,7 +6,9 @@
 
 #include "core/error.h"
 #include "prediction/predicted_body.h"
+#include "prediction/prediction_study_reader.h"
 #include "support/held_bar.h"
+#include "support/pulled_bar.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -73,6 +75,66 @@ TEST_F(PlayingARecording, NeedsTheForceThatHolds) {
   EXPECT_THAT([&] { PlayedNuisances(model); },
               ThrowsMessage<InputError>(HasSubstr("bar: the object is held until 0.0437 s by a "
                                                   "force that is not known")));
+}
+
+// A bar that a jaw pulls, played with these load cells.
+PlayedRecording PlayPulledBar(const TemporaryFolder& folder, const std::string& cells) {
+  const PredictionStudy study = ReadPredictionStudy(
+      Config::Parse(PulledBarExperiment(folder.Path(), {{"    fit_until: 11.5 s\n", cells}}),
+                    (folder / "study.yaml").string()));
+  const TetMesh mesh = PulledBarMesh();
+  const auto body = std::make_shared<const Body>(MakeBody(mesh, study.density));
+  const RecordingModel model(study, study.recordings.front(), mesh, body, {});
+  return Play(model, PlayedNuisances(model));
+}
+
+TEST(PlayingALoadCell, ShiftsAndOffsetsItsReadings) {
+  const TemporaryFolder folder;
+  PulledBarTruth truth;
+  truth.twist = 0.02;
+  WritePulledBar(folder.Path(), truth, kLoadCell,
+                 "{file: force.csv, time: t, x: mx, deviation: 0.01 N mm}");
+  const PlayedRecording exact = PlayPulledBar(folder, "");
+  // The frames are 1 s apart.
+  const PlayedRecording wrong =
+      PlayPulledBar(folder,
+                    "    simulated_cells:\n      - {part: jaw, tare: [0.1 N, 0, 0], delay: 1 s}\n"
+                    "      - {part: jaw, measures: torque, tare: [-2e-4 N m, 0, 0]}\n");
+  ASSERT_TRUE(wrong.summary.IsUsable()) << wrong.summary.message;
+  ASSERT_EQ(wrong.reactions.size(), 2u);
+  const Eigen::RowVectorXd force = exact.reactions[0].values.row(0);
+  const Eigen::RowVectorXd late = wrong.reactions[0].values.row(0);
+  EXPECT_EQ(wrong.reactions[0].times, exact.reactions[0].times);
+  ASSERT_EQ(late.size(), kPulledFrames);
+  // Equilibria are known to 1e-6 of the forces, which reach 3 N.
+  constexpr double kEquilibrium = 1e-5;
+  EXPECT_LT((late.tail(kPulledFrames - 1).array() - 0.1 - force.head(kPulledFrames - 1).array())
+                .abs()
+                .maxCoeff(),
+            kEquilibrium);
+  EXPECT_NEAR(late[0], force[0] + 0.1, kEquilibrium);  // it is at rest before its first frame
+  EXPECT_GT(force[1] - force[0], 0.1);
+  // The torque is not late, and the markers have no part in either.
+  const Eigen::RowVectorXd torque = exact.reactions[1].values.row(0);
+  EXPECT_LT((wrong.reactions[1].values.row(0).array() + 2e-4 - torque.array()).abs().maxCoeff(),
+            1e-5 * torque.cwiseAbs().maxCoeff());
+  ASSERT_EQ(wrong.markers.size(), exact.markers.size());
+  EXPECT_LT((wrong.markers[9] - exact.markers[9]).cwiseAbs().maxCoeff(), 1e-8);  // as above
+  EXPECT_EQ(wrong.times, exact.times);
+}
+
+TEST(PlayingALoadCell, RefusesWhatTheRecordingDoesNotMeasure) {
+  const TemporaryFolder folder;
+  WritePulledBar(folder.Path(), {});
+  const auto refused = [&](const std::string& cell, const std::string& why) {
+    EXPECT_THAT([&] { PlayPulledBar(folder, "    simulated_cells:\n      - " + cell + "\n"); },
+                ThrowsMessage<InputError>(HasSubstr(why)));
+  };
+  refused("{part: jaw, measures: torque}", "no measured_torque of a part \"jaw\"");
+  refused("{part: base}", "no measured_force of a part \"base\"");
+  refused("{part: jaw, tare: [0, 0.1 N, 0]}", "direction that the load cell does not measure");
+  refused("{part: jaw}\n      - {part: jaw}", "has an entry already");
+  refused("{part: jaw, delay: -1 s}", "delay");
 }
 
 }  // namespace

@@ -256,6 +256,41 @@ TEST_F(ReadingAPredictionStudy, TakesWhatIsKnownBeforeOfAParameter) {
               HasSubstr("parameters[0].mean: needs a `deviation` beside it"));
 }
 
+TEST_F(ReadingAPredictionStudy, TakesAnUncertainDensityWhereItsWeightIsKnown) {
+  const PredictionStudy study =
+      ReadBarStudy(folder_.Path(), {{"noise: 0.05 mm", "density_deviation: 0.02\nnoise: 0.05 mm"}});
+  ASSERT_EQ(study.fitted.size(), 3u);
+  EXPECT_TRUE(IsDensity(study.fitted[2], study.effects));
+  EXPECT_FALSE(IsDensity(study.fitted[0], study.effects));
+  EXPECT_EQ(study.fitted[2].prior.prior_mean, 1000);
+  EXPECT_EQ(study.fitted[2].prior.prior_deviation, 0.02);
+  EXPECT_EQ(study.effects[3]->Parameters()[3], -9.80665);
+  EXPECT_EQ(ReadBarStudy(folder_.Path()).effects.size(), 3u);
+  EXPECT_THAT(MessageAfter({{"noise: 0.05 mm", "density_deviation: 0.02\nnoise: 0.05 mm"},
+                            {"{name: mass_damping.alpha}", "{name: gravity.acceleration_z}"}}),
+              HasSubstr("density_deviation: cannot be combined with a fitted "
+                        "gravity.acceleration_z"));
+  EXPECT_THAT(MessageAfter({{"noise: 0.05 mm", "density_deviation: 0.02\nnoise: 0.05 mm"},
+                            {"  - {type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}\n", ""},
+                            {"    fit_until",
+                             "    effects: [{type: gravity, acceleration: [0, 0, "
+                             "-9.8 m/s^2]}]\n    fit_until"}}),
+              HasSubstr("density_deviation: needs gravity in the list `effects` of the "
+                        "experiment, not in that of bar"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesPlacementsThatSayNothing) {
+  const auto message = [&](const std::string& more) {
+    return MessageAfterInRecording({{"normal: [-1, 0, 0]}", "normal: [-1, 0, 0]}, " + more}});
+  };
+  EXPECT_EQ(message("placement: {shift_deviation: 1 mm}"), "nothing was refused");
+  EXPECT_THAT(message("placement: {shift_deviation: 0 mm}"),
+              ContainsRegex("recording.yaml.*placement: needs a shift_deviation or a "
+                            "turn_deviation above 0"));
+  EXPECT_THAT(message("placement: {turn_deviation: 1 deg}, directions: [x]"),
+              HasSubstr("placement: cannot be combined with `directions`"));
+}
+
 TEST_F(ReadingAPredictionStudy, RefusesNothingToFit) {
   EXPECT_THAT(MessageAfter({{"    fit_until", "    fitted: false\n    fit_until"}}),
               HasSubstr("recordings: none of them is fitted"));

@@ -5,7 +5,9 @@
 #include <fstream>
 #include <string>
 
+#include "core/progress.h"
 #include "experiment/scene.h"
+#include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_study.h"
 #include "support/temporary_folder.h"
 
@@ -72,6 +74,26 @@ TEST(StudyErrors, NameTheLineAndTheField) {
 
 TEST(StudyErrors, TheUnchangedExperimentIsSound) {
   EXPECT_EQ(MessageAfter("seed: 1", "seed: 2"), "nothing was refused");
+}
+
+// The experiment names the file, not the recording.
+TEST(StudyErrors, TheNodesWhereForcesActAreAnInputOfTheRun) {
+  const TemporaryFolder folder;
+  const std::filesystem::path experiments =
+      std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments";
+  std::ofstream(folder / "pushed_nodes.txt") << "1\n3\n";
+  std::ofstream(folder / "e.yaml")
+      << "use: " << (experiments / "bend.yaml").string()
+      << "\noutput: run\nrecording: " << (experiments / "recordings/bend").string()
+      << "\nforces: {region: {nodes_file: " << (folder / "pushed_nodes.txt").string() << "}}\n";
+  const ReconstructionStudy study = ReadReconstruction(Config::Load(folder / "e.yaml"));
+  std::ofstream(folder / "pushed_nodes.txt", std::ios::app) << "\n";
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  EXPECT_THAT([&] { RunReconstruction(study, &progress); },
+              testing::ThrowsMessage<InputError>(
+                  testing::AllOf(HasSubstr("pushed_nodes.txt"), HasSubstr("has changed"))));
 }
 
 TEST(StudyErrors, ValuesFarFromTheUsualAreAWarning) {

@@ -27,7 +27,7 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   parameter.estimate.low = 1;
   parameter.estimate.verdict = ParameterEstimate::Verdict::kTradedOff;
   parameter.near_bound = {true, 2.5};
-  parameter.share_of_forces = 0.75;
+  parameter.shares = DataShares{0.2, 0.05, 0.75};
   record.held = {{"density", "kg/m^3", {1070}}, {"gravity.acceleration", "m/s^2", {0, 0, -9.81}}};
   record.recordings.push_back({"a", true, 1e-4, {3, 30, 1e-4, 2e-4, 1.5}, {}, std::nullopt});
   record.recordings[0].marker_names = {"root", "tip"};
@@ -67,7 +67,10 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   EXPECT_EQ(read.held[1].values, (std::vector<double>{0, 0, -9.81}));
   ASSERT_EQ(read.recordings.size(), 1u);
   EXPECT_EQ(read.recordings[0].in_fit.rms_over_sigma, 1.5);
-  EXPECT_EQ(read.parameters[0].share_of_forces, 0.75);
+  ASSERT_TRUE(read.parameters[0].shares);
+  EXPECT_EQ(read.parameters[0].shares->markers, 0.2);
+  EXPECT_EQ(read.parameters[0].shares->scans, 0.05);
+  EXPECT_EQ(read.parameters[0].shares->forces, 0.75);
   EXPECT_EQ(read.recordings[0].marker_names, (std::vector<std::string>{"root", "tip"}));
   ASSERT_EQ(read.recordings[0].reactions.size(), 1u);
   EXPECT_EQ(ReactionToJson(read.recordings[0].reactions[0]),

@@ -6,6 +6,7 @@
 namespace lacuna {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 TEST(CalibrationReport, ShowsParametersErrorsAndConflicts) {
@@ -25,6 +26,7 @@ TEST(CalibrationReport, ShowsParametersErrorsAndConflicts) {
   parameter.estimate.correlation = 0.97;
   parameter.at_limit = 14;
   parameter.near_bound = {false, 10.9};
+  parameter.shares = DataShares{0.2, 0.05, 0.75};
   record.held = {{"density", "kg/m^3", {1070}}, {"gravity.acceleration", "m/s^2", {0, 0, -9.81}}};
   record.recordings.push_back({"swing", true, 1e-4, {3, 30, 1e-4, 2e-4, 1.5}, {}, std::nullopt});
   record.prior_conflicts = {MarkerConflictCount{"swing", 7, 8}};
@@ -35,6 +37,9 @@ TEST(CalibrationReport, ShowsParametersErrorsAndConflicts) {
                               "m/s^2\n"));
   EXPECT_THAT(text, HasSubstr("fitted    0.100 mm (largest 0.200), 1.5 σ, 3 frames"));
   EXPECT_THAT(text, HasSubstr("held out  -"));
+  EXPECT_THAT(text, ContainsRegex("with all other parameters held fixed:\n"
+                                  "  parameter +markers +scans +forces\n"));
+  EXPECT_THAT(text, ContainsRegex("mass_damping.alpha +20 % +5 % +75 %"));
   EXPECT_THAT(text, HasSubstr("time step 2 ms; halving it would change the prediction by 0.03 σ"));
   EXPECT_THAT(text, HasSubstr("7 of 8 markers conflict with their priors; the worst are listed"));
 }

@@ -76,6 +76,18 @@ TEST(ComparisonReport, TheTableHasOneLineForEachPart) {
   EXPECT_THAT(table, HasSubstr("0.870"));
 }
 
+TEST(ComparisonReport, TheTableHasBothErrorsSideBySideAndExplainsThem) {
+  ComparisonRecord record = Example();
+  EXPECT_THAT(ComparisonTable(record), Not(HasSubstr("place_deviation")));
+  record.recordings[0].parts[0].rms_at_measured_places = 1.4e-3;
+  const std::string table = ComparisonTable(record);
+  EXPECT_THAT(table, testing::ContainsRegex("rms \\(mm\\)  as measured"));
+  EXPECT_THAT(table, testing::ContainsRegex("0\\.870 +1\\.400 +5\\.0"));
+  EXPECT_THAT(table, HasSubstr("(place_deviation). as measured: with each marker at"));
+  record.recordings[0].is_scan = true;
+  EXPECT_THAT(ComparisonTable(record), HasSubstr("(scan.shape_deviation)"));
+}
+
 TEST(ComparisonReport, NamesTheLikelyCauseOfAForceAgainstTheVelocity) {
   ComparisonRecord record = Example();
   UnexplainedForceRecord force;

@@ -142,8 +142,8 @@ TEST(PanelPictureTest, AllPanelsShareOneColourScale) {
     return red > blue + 80 && green > blue + 80;
   };
   // Each has half of the 82 % left of the bar; the squares are 0.41 / 1.08 of the width.
-  EXPECT_GT(pixels.Share(0.1, 0.3, 0.4, 0.6, is_dark), 0.99);
-  EXPECT_GT(pixels.Share(0.51, 0.71, 0.4, 0.6, is_yellow), 0.99);
+  EXPECT_GT(pixels.Share(0.1, 0.3, 0.4, 0.6, is_yellow), 0.99);
+  EXPECT_GT(pixels.Share(0.51, 0.71, 0.4, 0.6, is_dark), 0.99);
   EXPECT_GT(pixels.Share(0.83, 1, 0, 1, IsDrawn), 0.02) << "the bar";
 }
 

@@ -195,29 +195,68 @@ TEST(ReportDocument, ScenesHaveTheFramesOfTheMotionAndAllFramesAsSeries) {
   EXPECT_EQ(scenes.at(1).at("times").size(), 40u);
 }
 
-TEST(ReportDocument, AMeasuredForceIsACurveOverTheDisplacementOfItsGrip) {
+// A fit with a load cell for the force along x and y and the torque about x in its first recording.
+json CurvesOf(const std::filesystem::path& run, const std::string& forces) {
+  CalibrationRecord record = SmallLedger().models[0].record;
+  FittedReaction force, torque;
+  force.name = torque.name = "jaw";
+  force.labels = {"x", "y"};
+  force.deviation = 0.02;
+  torque.is_torque = true;
+  torque.labels = {"x"};
+  torque.deviation = 1e-4;
+  for (FittedReaction* reaction : {&force, &torque})
+    reaction->tare.assign(reaction->labels.size(), 0);
+  record.recordings[0].reactions = {force, torque};
+  WriteSmallFit(run, {}, record);
+  const char* header = "recording,reaction,component,frame,time_s,fitted,";
+  std::ofstream(run / "calibration/reactions.csv")
+      << header << "displacement_m,measured_N,difference_N\n"
+      << forces;
+  std::ofstream(run / "calibration/torques.csv")
+      << header << "rotation_rad,measured_N_m,difference_N_m\n0,1,0,0,0,1,0,0.001,0\n"
+      << "0,1,0,2,2,0,0.1,0.003,-0.001\n";
+  return ReportDocument({run}).at("runs").at(0).at("models").at(0).at("scenes").at(0).at(
+      "reactions");
+}
+
+TEST(ReportDocument, EveryMeasuredComponentIsACurveOverTimeAndOverTheMotionOfItsGrip) {
   const TemporaryFolder folder;
-  WriteFit(folder / "bar", {});
-  const auto load = [&] {
-    return ReportDocument({folder / "bar"})
-        .at("runs")
-        .at(0)
-        .at("models")
-        .at(0)
-        .at("scenes")
-        .at(0)
-        .at("load");
-  };
-  EXPECT_TRUE(load().is_null());
-  // The second component varies most; its second frame has no reading.
-  std::ofstream(folder / "bar/calibration/reactions.csv")
-      << "recording,reaction,component,frame,time_s,fitted,displacement_m,measured_N,difference_N\n"
-         "0,0,0,0,0,1,0,0.1,0\n0,0,1,0,0,1,0,0,0.01\n0,0,0,1,1,1,0,0.1,0\n"
-         "0,0,1,1,1,1,0.001,nan,nan\n0,0,0,2,2,0,0,0.1,0\n0,0,1,2,2,0,0.002,3,-0.5\n"
-         "1,0,0,0,0,1,0,7,0\n1,0,0,1,1,1,0,9,0\n";
-  EXPECT_EQ(load(), json({{"displacement_m", {0.0, 0.002}},
-                          {"force_N", {0.0, 3.0}},
-                          {"model_force_N", {0.01, 2.5}}}));
+  // The second component has no reading in its second frame, and the grip hardly moves along it.
+  const json curves = CurvesOf(folder / "bar",
+                               "0,0,0,0,0,1,0,0,0.01\n0,0,1,0,0,1,0,0.5,0\n"
+                               "0,0,0,1,1,1,0.001,1,0\n0,0,1,1,1,1,0.00001,nan,nan\n"
+                               "0,0,0,2,2,0,0.002,3,-0.5\n0,0,1,2,2,0,0.00002,0.25,0.5\n");
+  ASSERT_EQ(curves.size(), 3u);
+  EXPECT_EQ(curves.at(0), json({{"reading", 0},
+                                {"grip", "jaw"},
+                                {"quantity", "force"},
+                                {"unit", "N"},
+                                {"component", "x"},
+                                {"sigma", 0.02},
+                                {"time_s", {0.0, 1.0, 2.0}},
+                                {"fitted", {true, true, false}},
+                                {"measured", {0.0, 1.0, 3.0}},
+                                {"model", {0.01, 1.0, 2.5}},
+                                {"motion", {0.0, 0.001, 0.002}}}));
+  EXPECT_EQ(curves.at(1).at("component"), "y");
+  EXPECT_EQ(curves.at(1).at("time_s"), json({0.0, 2.0}));
+  EXPECT_EQ(curves.at(1).at("model"), json({0.5, 0.75}));
+  EXPECT_TRUE(curves.at(1).at("motion").is_null());
+  EXPECT_EQ(curves.at(2).at("quantity"), "torque");
+  EXPECT_EQ(curves.at(2).at("unit"), "N m");
+  EXPECT_EQ(curves.at(2).at("fitted"), json({true, false}));
+  EXPECT_EQ(curves.at(2).at("motion"), json({0.0, 0.1}));
+}
+
+TEST(ReportDocument, RefusesReactionsThatTheFitDoesNotHave) {
+  const TemporaryFolder folder;
+  try {
+    CurvesOf(folder / "bar", "0,0,2,0,0,1,0,0,0.01\n");
+    FAIL() << "nothing was refused";
+  } catch (const InputError& problem) {
+    EXPECT_THAT(problem.what(), HasSubstr("component 2 of reading 0 of a"));
+  }
 }
 
 TEST(ReportDocument, WhatIsOfAnEarlierFitIsLeftOutWithANote) {

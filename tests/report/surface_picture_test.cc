@@ -94,7 +94,7 @@ TEST(SurfacePictureTest, SquareCoversThePixelsThatItShould) {
   EXPECT_LT(pixels.At(0.5, 0.5).maxCoeff(), 240);
 }
 
-TEST(SurfacePictureTest, ColoursRunFromDarkBlueToYellowWithTheValue) {
+TEST(SurfacePictureTest, ColoursRunFromYellowToDarkBlueWithTheValue) {
   const TemporaryFolder folder;
   SurfaceScene scene = Square();
   scene.vertex_values = Eigen::Vector4d(0, 1, 1, 0);
@@ -105,11 +105,11 @@ TEST(SurfacePictureTest, ColoursRunFromDarkBlueToYellowWithTheValue) {
   // 0.41 / 1.08 / 2; the two samples lie just inside the left and right edge.
   const Eigen::Vector3i left = pixels.At(0.41 - 0.17, 0.5);
   const Eigen::Vector3i right = pixels.At(0.41 + 0.17, 0.5);
-  EXPECT_GT(left[2], left[1]);         // blue before green
-  EXPECT_LT(left.sum(), 300);          // dark
-  EXPECT_GT(right[0], right[2] + 80);  // red and green without blue: yellow
-  EXPECT_GT(right[1], right[2] + 80);
-  EXPECT_GT(right.sum(), left.sum() + 100);
+  EXPECT_GT(left[0], left[2] + 80);  // red and green without blue: yellow
+  EXPECT_GT(left[1], left[2] + 80);
+  EXPECT_GT(right[2], right[1]);  // blue before green
+  EXPECT_LT(right.sum(), 300);    // dark
+  EXPECT_GT(left.sum(), right.sum() + 100);
 }
 
 TEST(SurfacePictureTest, FixedRangeMakesFramesComparable) {
@@ -121,8 +121,8 @@ TEST(SurfacePictureTest, FixedRangeMakesFramesComparable) {
   RENDER_OR_SKIP(folder / "a.png", scene, options);
   scene.vertex_values = Eigen::Vector4d::Constant(0.75);
   RENDER_OR_SKIP(folder / "b.png", scene, options);
-  EXPECT_GT(Pixels(folder / "b.png").At(0.41, 0.5)[1],
-            Pixels(folder / "a.png").At(0.41, 0.5)[1] + 40);
+  EXPECT_GT(Pixels(folder / "a.png").At(0.41, 0.5)[1],
+            Pixels(folder / "b.png").At(0.41, 0.5)[1] + 40);
 }
 
 TEST(SurfacePictureTest, UnmeasuredValuesAreGrey) {

@@ -102,7 +102,7 @@ TEST(FollowUps, TheTrueBarFollowsThePlan) {
     const PlayedRecording played = Play(model, PlayedNuisances(model));
     ASSERT_TRUE(played.summary.IsUsable()) << protocol.name;
     const Markers seen =
-        RecordTruth(trial, protocol, planned, trial.hold_forces[0], 2, /*rough=*/true);
+        RecordTruth(trial, protocol, planned, trial.hold_forces[0], 2, /*rough=*/true).markers;
     EXPECT_LT(Distance(seen.positions, played.markers), 8e-4) << protocol.name;
     names.push_back(protocol.name);
     if (protocol.name == "repeat") {

@@ -130,6 +130,15 @@ const rms = (values) => {
   return Math.sqrt(known.reduce((sum, value) => sum + value * value, 0) / (known.length || 1));
 };
 
+// A grip that pulls along x, goes back and turns about x; it rests along y.
+function makeReactions(time_s, fitted) {
+  const curve = (reading, quantity, unit, component, motion, stiffness) => ({
+    reading, grip: 'jaw', quantity, unit, component, sigma: 0.01 * stiffness, time_s, fitted, motion,
+    measured: time_s.map((t, k) => stiffness * (Math.sin(6 * t) + 0.05 * Math.cos(6 * t) + 0.02 * Math.sin(50 * k))), model: time_s.map((t) => 0.9 * stiffness * Math.sin(6 * t)) });
+  const there_and_back = (size) => time_s.map((t) => size * Math.sin(6 * t));
+  return [curve(0, 'force', 'N', 'x', there_and_back(0.01), 0.5), curve(0, 'force', 'N', 'y', null, 0.1), curve(1, 'torque', 'N m', 'x', there_and_back(0.2), 2e-3)];
+}
+
 function makeScene(recording, motion, { vertices = 400, frames = 60, seed = 1, withForce = true, packPoints = packFloats, isScan = false } = {}) {
   const times = frameTimes(frames), allTimes = frameTimes(60);
   const surface = barSurface(vertices);
@@ -176,7 +185,7 @@ function makeScene(recording, motion, { vertices = 400, frames = 60, seed = 1, w
     points_series: { time_s: allTimes, names: MARKER_NAMES, measured: packPoints([allTimes.length, P, 3], all.measured), model: packPoints([allTimes.length, P, 3], all.model) },
     force: withForce ? { time_s: allTimes, force_N: [swing(0, 0.01), swing(1, 0.024), swing(2, 0.05)], force_deviation_N: [2e-3, 3e-3, 4e-3].map((value) => allTimes.map((_, k) => (k === 2 ? null : value))),
       torque_N_m: [swing(0, 4e-4), swing(1, 9e-4), swing(2, 2e-4)], power_W: swing(0.5, 0.004) } : null,
-    load: withForce ? { displacement_m: allTimes.map((t) => 0.02 * t), force_N: allTimes.map((t) => 0.4 * t ** 0.8), model_force_N: allTimes.map((t) => 0.36 * t) } : null,
+    reactions: withForce ? makeReactions(allTimes, allFitted) : [],
     notes: vertices > 5000 ? ['The surface has fewer vertices than that of the model.'] : [],
     // For the records below.
     measures: { times: allTimes, fitted: allFitted, residual: all.residual, lengths },
@@ -203,6 +212,7 @@ function calibration(isSecond) {
     : [parameter('young_modulus', 'Pa', 8.47e4, 3.8e3), parameter('poisson_ratio', '', 0.26, 0.233, 'traded off', 'young_modulus', -0.99),
        parameter('stiffness_damping.beta', 's', 5.5e-3, 2.3e-4), parameter('recording 1.hold_force_x', 'N', -0.021, 0.14, 'at its bound')];
   if (!isSecond) parameters[3].high_95 = null;
+  parameters[0].shares = { markers: 0.25, scans: 0, forces: 0.75 };
   return { schema_version: 2, experiment: '../../experiments/hidden_effect.yaml', usable: true, message: '', noise_m: NOISE, time_step_s: 0.005,
            step_error_over_sigma: 0.15, rms_before: 9.1, rms_after: isSecond ? 1.03 : 4.4, predictions: 31, parameters, recordings: [], prior_conflicts: [] };
 }
@@ -415,7 +425,7 @@ export function largeReport(vertices, frames) {
 // A motion as a reconstruction keeps it: a surface, and scans whose points have no names and no counterparts.
 function scannedScene() {
   const scene = makeScene('bend', FIRST, { withForce: false });
-  return { ...scene, fitted: scene.times.map(() => true), series: null, points_series: null, load: null,
+  return { ...scene, fitted: scene.times.map(() => true), series: null, points_series: null, reactions: [],
            points: { names: [], is_scan: true, measured: scene.points.measured, model: null, residual: null, sigma: null } };
 }
 
@@ -431,7 +441,8 @@ export function scansReport() {
   model.errors.has_held_out = false;
   for (const scene of model.scenes) {
     scene.surface = null;
-    scene.force = scene.load = null;
+    scene.force = null;
+    scene.reactions = [];
   }
   return data;
 }

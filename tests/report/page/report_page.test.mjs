@@ -331,7 +331,8 @@ const OPTIONAL_PARTS = {
     ['sentences', 'runs.0.noise', 'runs.0.models.*.diagnosis.decision', 'runs.0.models.*.scenes.*.series'],
     ['runs.0.ledger', 'runs.0.models.*.errors', 'runs.0.models.*.scenes.*.surface', 'runs.0.models.*.scenes.*.force'],
     ['runs.0.provenance', 'runs.0.models.*.calibration', 'runs.0.models.*.scenes.*.surface.fields', 'runs.0.models.*.scenes.*.points_series'],
-    ['runs.0.models.*.comparison', 'runs.0.models.*.scenes.*.points.residual', 'runs.0.models.*.scenes.*.load'],
+    ['runs.0.models.*.comparison', 'runs.0.models.*.scenes.*.points.residual', 'runs.0.models.*.scenes.*.reactions.*.motion'],
+    ['runs.0.models.*.scenes.*.reactions'],
     ['runs.0.models.*.diagnosis', 'runs.0.models.*.scenes.*.points.model', 'runs.0.models.*.scenes.*.fitted'],
     ['runs.0.models.*.scenes.*.points'],
     ['runs.0.models.*.scenes'],
@@ -373,8 +374,9 @@ test('every part is there when its data is', async () => {
   const full = await open(fixture('full'));
   for (const id of ['errors', 'force', 'physics', 'plan', 'parameters', 'agreement', 'validation', 'provenance']) assert.equal(await full.page.locator(`#${id}`).count(), 1, id);
   const text = await full.page.locator('main').textContent();
-  for (const part of ['Error over time', 'Position of', 'Load against displacement', 'Against speed', 'Against distance from the grip', 'Torque', 'Power', 'Effects that were tried', 'Which pairs these recordings can separate',
-                      'What such recordings would have said', 'The next recording', 'force that holds', 'The recordings disagree', 'traded off with young_modulus', 'metric: probability', 'Commands that reproduce it', 'noise of the measurement']) assert.ok(text.includes(part), part);
+  for (const part of ['Error over time', 'Position of', 'Force on jaw', 'Load against displacement, x', 'y, over time', 'Torque on jaw', 'Torque against rotation, x', 'measured, held out', 'Against speed', 'Against distance from the grip', 'Torque', 'Power', 'Effects that were tried', 'Which pairs these recordings can separate',
+                      'What such recordings would have said', 'The next recording', 'force that holds', 'The recordings disagree', 'traded off with young_modulus', 'in the information about a parameter', '75 %', 'metric: probability', 'Commands that reproduce it', 'noise of the measurement']) assert.ok(text.includes(part), part);
+  assert.ok(!text.includes('Load against displacement, y'), 'a force over a motion that the grip does not make');
   await full.close();
   const study = await open(fixture('study'));
   for (const id of ['reconstruction', 'table1', 'ablation', 'trials', 'intervals']) assert.equal(await study.page.locator(`#${id}`).count(), 1, id);

@@ -46,8 +46,8 @@ function seriesOptions(one) {
   const isDots = one.style === 'dots';
   return {
     label: one.label, stroke: colour, width: isDots ? 0 : one.width ?? 1.8, dash: one.dash ? [5, 4] : undefined, spanGaps: false,
-    paths: isDots ? () => null : undefined,
-    points: isDots || one.style === 'line-dots' ? { show: true, size: one.size ?? 5, fill: colour, stroke: colour, width: 0 } : { show: false },
+    paths: isDots || one.inOrder ? () => null : undefined,
+    points: one.inOrder ? { show: false } : isDots || one.style === 'line-dots' ? { show: true, size: one.size ?? 5, fill: colour, stroke: colour, width: 0 } : { show: false },
     value: (_, value) => (value === null || value === undefined ? '' : number(value)),
   };
 }
@@ -114,6 +114,40 @@ function drawAreas(options) {
   };
 }
 
+// Draws the series that go back and forth along x, which the library sorts, in the order of their values.
+function drawInOrder(options) {
+  return (plot) => {
+    const { ctx, bbox } = plot;
+    for (const one of options.series) {
+      if (!one.inOrder) continue;
+      ctx.save();
+      ctx.beginPath();
+      ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+      ctx.clip();
+      ctx.strokeStyle = ctx.fillStyle = themeColour(one.colour);
+      ctx.lineWidth = (one.style === 'dots' ? 1.2 : 1.8) * devicePixelRatio;
+      if (one.dash && one.style !== 'dots') ctx.setLineDash([5 * devicePixelRatio, 4 * devicePixelRatio]);
+      let isOpen = false;
+      ctx.beginPath();
+      for (let k = 0; k < one.x.length; ++k) {
+        const isKnown = Number.isFinite(one.x[k]) && Number.isFinite(one.y[k]);
+        const [x, y] = isKnown ? [plot.valToPos(one.x[k], 'x', true), plot.valToPos(one.y[k], 'y', true)] : [];
+        if (isKnown && one.style === 'dots') {
+          const radius = ((one.size ?? 5) / 2) * devicePixelRatio;
+          ctx.moveTo(x + radius, y);
+          ctx.arc(x, y, radius, 0, 2 * Math.PI);
+        } else if (isKnown) {
+          ctx[isOpen ? 'lineTo' : 'moveTo'](x, y);
+        }
+        isOpen = isKnown;
+      }
+      if (one.style === 'dots' && !one.hollow) ctx.fill();
+      else ctx.stroke();
+      ctx.restore();
+    }
+  };
+}
+
 function rangeOf(fixed, includesZero, marginShare = 0.06) {
   return (_, low, high) => {
     if (low === null || high === null) return [0, 1];
@@ -137,7 +171,7 @@ class Chart {
       },
       axes: [axis(options.x, false), axis(options.y, true, options.axisSize ?? 52)],
       series: [{ label: options.x, value: (_, value) => (value === null || value === undefined ? '' : number(value)) }, ...options.series.map(seriesOptions)],
-      hooks: { drawClear: draw, ready: [(plot) => this.addMarker(plot)], setSize: [() => this.showTime()] },
+      hooks: { drawClear: draw, draw: [drawInOrder(options)], ready: [(plot) => this.addMarker(plot)], setSize: [() => this.showTime()] },
       cursor: { y: false, points: { size: 7 }, drag: { x: true, y: false } },
       legend: { show: options.legend ?? true, live: true, markers: { width: 0, fill: (_, k) => themeColour(options.series[k - 1]?.colour ?? 'muted') } },
     }, data, host);
@@ -218,10 +252,11 @@ function numbersTable(options, data) {
 // One legend for several charts with the same series.
 export function sharedLegend(series) {
   return h('p', { class: 'key', 'aria-hidden': 'true' }, series.map((one) => h('span', { class: 'key-item' },
-    h('i', { class: `key-line${one.dash ? ' dashed' : ''}${one.style === 'dots' ? ' dots' : ''}`, style: { 'border-color': `var(--${one.colour})` } }), one.label.slice(0, 120))));
+    h('i', { class: `key-line${one.dash ? ' dashed' : ''}${one.style === 'dots' ? ' dots' : ''}${one.hollow ? ' hollow' : ''}`, style: { 'border-color': `var(--${one.colour})` } }), one.label.slice(0, 120))));
 }
 
-// A figure with a chart. `options.series` are {label, x, y, colour, style, dash}; an empty chart is null.
+// A figure with a chart. `options.series` are {label, x, y, colour, style, dash, inOrder, hollow}; an empty
+// chart is null.
 export function chart(options) {
   const series = options.series.filter((one) => one.x?.length > 0 && Array.from(one.y ?? []).some(Number.isFinite));
   if (series.length === 0) return null;

@@ -3,6 +3,7 @@ import { chart, sharedLegend } from './chart.js';
 import { unpack } from './decode.js';
 import { h, labelledSelect } from './dom.js';
 import { fixed, isNumber, millimetres, sigmas } from './format.js';
+import { hasReactions, reactionPlots } from './reactions.js';
 import { following, grid, name, section, table } from './section.js';
 import { rmsOfNoise } from './scene_data.js';
 import { sceneOf } from './motion.js';
@@ -105,15 +106,6 @@ function trends({ choices }, state) {
     h('p', { class: 'explain' }, 'Frames (for the distance from the grip: points) in bins of about equal size. An error that grows with speed suggests a missing loss; with strain, a wrong elasticity law.')), sharedLegend(shown), grid(charts, 'small'));
 }
 
-function load({ choices }, state) {
-  const all = scenesOf(choices, state.recording).filter(({ scene }) => scene.load?.displacement_m?.length > 0);
-  if (all.length === 0) return null;
-  const { load: first } = all[0].scene;
-  return chart({ title: 'Load against displacement', explain: 'The measured force, and the force that each model needs for the same displacement.', x: 'displacement, mm', y: 'force, N', height: 260,
-    series: [{ label: 'measured', x: inMillimetres(first.displacement_m), y: first.force_N ?? [], colour: 'measured', style: 'dots' },
-      ...all.filter(({ scene }) => scene.load.model_force_N).map(({ choice, scene }) => ({ label: choice.label, x: inMillimetres(scene.load.displacement_m), y: scene.load.model_force_N, colour: choice.colour }))] });
-}
-
 // One row for each model, recording and part.
 function errorTable(choices) {
   const rows = [];
@@ -121,7 +113,7 @@ function errorTable(choices) {
     const compared = choice.model.comparison?.recordings ?? [];
     for (const recording of compared) {
       for (const part of recording.parts ?? []) {
-        rows.push([name(choice.label), name(recording.name), part.part, fixed(part.frames, 0), millimetres(part.rms_m), sigmas(part.rms_over_sigma), isNumber(part.rms_over_floor) ? fixed(part.rms_over_floor, 1) : '–', millimetres(part.largest_m),
+        rows.push([name(choice.label), name(recording.name), part.part, fixed(part.frames, 0), millimetres(part.rms_m), millimetres(part.rms_at_measured_places_m), sigmas(part.rms_over_sigma), isNumber(part.rms_over_floor) ? fixed(part.rms_over_floor, 1) : '–', millimetres(part.largest_m),
           fixed(part.time_correlation?.lag_one_correlation, 2), name(recording.point_names?.[part.worst_point] ?? '–')]);
       }
     }
@@ -129,11 +121,11 @@ function errorTable(choices) {
     for (const recording of choice.model.calibration?.recordings ?? []) {
       for (const [key, part] of [['in_fit', 'fitted'], ['held_out', 'held out']]) {
         const measure = recording[key];
-        if (measure?.frames > 0) rows.push([name(choice.label), name(recording.name), part, fixed(measure.frames, 0), millimetres(measure.rms_m), sigmas(measure.rms_over_sigma), '–', millimetres(measure.largest_m), '–', '–']);
+        if (measure?.frames > 0) rows.push([name(choice.label), name(recording.name), part, fixed(measure.frames, 0), millimetres(measure.rms_m), millimetres(measure.rms_at_measured_places_m), sigmas(measure.rms_over_sigma), '–', millimetres(measure.largest_m), '–', '–']);
       }
     }
   }
-  return table('Plain errors', [['model'], ['recording'], ['part'], ['frames', true], ['rms', true], ['rms / σ', true, 'relative to the noise that the fit assumes'], ['rms / floor', true, 'relative to the noise that the recording itself shows'], ['largest', true], ['correlation in time', true, 'of the errors of neighbouring frames; near 0 for noise'], ['worst point']], rows);
+  return table('Plain errors', [['model'], ['recording'], ['part'], ['frames', true], ['rms', true, 'with each point at the place on the object that the fit gives it within the uncertainty of its measurement'], ['as measured', true, 'rms with each point at the place where it was measured: where it is much larger, the fit ascribes the difference to errors of these places'], ['rms / σ', true, 'relative to the noise that the fit assumes'], ['rms / floor', true, 'relative to the noise that the recording itself shows'], ['largest', true], ['correlation in time', true, 'of the errors of neighbouring frames; near 0 for noise'], ['worst point']], rows);
 }
 
 export function errorSection(context) {
@@ -147,7 +139,7 @@ export function errorSection(context) {
     'Residual is predicted minus measured. 1 σ means as good as the measurement allows.',
     !context.hasErrorsFirst && scenes.some((scene) => scene.series?.rms_m?.length > 0) && following(store, ['recording'], (state) => errorOverTime(context, state)),
     hasScenes && scenes.some((scene) => scene.points_series?.model || scene.points?.model) && following(store, ['recording', 'point'], (state) => pointPlots(context, state)),
-    scenes.some((scene) => scene.load?.displacement_m?.length > 0) && following(store, ['recording'], (state) => load(context, state)),
+    hasReactions(scenes) && following(store, ['recording'], (state) => reactionPlots(context, state)),
     hasTrends && following(store, ['recording'], (state) => trends(context, state)),
     rows, notes.length > 0 && h('ul', { class: 'notes' }, notes.map((note) => h('li', {}, note))));
 }

@@ -31,6 +31,15 @@ function verdictText(parameter) {
   return parameter.verdict ?? '';
 }
 
+// Which kind of data determines each parameter; only where a fit has more than one kind.
+function sharesTable(fitted) {
+  const percent = (share) => `${fixed(100 * share, 0)} %`;
+  const rows = fitted.flatMap(({ label, model }) => model.calibration.parameters.filter((one) => one.shares)
+    .map((one) => [name(one.name), name(label), percent(one.shares.markers), percent(one.shares.scans), percent(one.shares.forces)]));
+  return rows.length === 0 ? null : table('Share of each kind of data in the information about a parameter, with all others held fixed',
+    [['parameter'], ['model'], ['markers', true], ['scans', true], ['forces', true]], rows);
+}
+
 export function parameterSection({ choices }) {
   const fitted = choices.filter((choice) => choice.model.calibration?.parameters?.length > 0);
   if (fitted.length === 0) return null;
@@ -53,6 +62,7 @@ export function parameterSection({ choices }) {
     'Fitted values with 95 % intervals. A wrong model makes its parameters compensate, so intervals of different models need not overlap.',
     table(null, [['parameter'], ['model'], ['value', true], ['95 % interval', true], ['unit'], ['interval, each on its own scale'], ['what the data say']], rows, (r) => (starts[r] ? 'group-start' : null)),
     h('dl', { class: 'facts wide' }, used.map((one) => h('div', {}, h('dt', {}, one), h('dd', {}, PARAMETER_VERDICTS[one])))),
+    sharesTable(fitted),
     table('The fits', [['model'], ['time step', true], ['change if it is halved', true, 'of the prediction'], ['values in conflict with priors', true, 'more than three standard deviations from what was known before the fit']],
       fitted.map(({ label, model: { calibration } }) => [name(label), quantity(calibration.time_step_s, 's'), isNumber(calibration.step_error_over_sigma) ? `${number(calibration.step_error_over_sigma, 2)} σ` : NONE, String(calibration.prior_conflicts?.length ?? 0)])));
 }

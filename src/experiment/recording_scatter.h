@@ -1,0 +1,60 @@
+// How far the points of a recording scatter, over all of its frames.
+#ifndef LACUNA_EXPERIMENT_RECORDING_SCATTER_H_
+#define LACUNA_EXPERIMENT_RECORDING_SCATTER_H_
+
+#include <Eigen/Core>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "scan/recording.h"
+
+namespace lacuna {
+
+struct RecordingScatter {
+  // Of scans: σ of a point about the surface through its neighbours, along the normal
+  // (scan/surface_scatter.h). Of markers and tracked points: σ of a coordinate about the motion of
+  // its point (analysis/track_scatter.h).
+  bool is_of_surface = false;
+  // m, σ: of scans the median over the frames, of tracks that of all of them together, or of a
+  // marker of weight 1 where they have weights. NaN where nothing can be said.
+  double typical = std::numeric_limits<double>::quiet_NaN();
+  bool is_upper_bound = false;  // it includes shape or motion that the recording does not resolve
+  bool is_at_rest = false;      // of tracks: it is that of frames in which the points rest
+  double largest = 0;           // m, σ of the frame, marker or tracked point that scatters most
+  std::string largest_in;       // its name: "frame 7", "marker tip", "row 12"
+  double spacing = 0;           // m, of the points of a cloud (median over the frames); 0: none
+  double outlier_share = 0;     // of all points in all frames; NaN where none could be judged
+  int worst_frame = -1;         // the frame with the largest share of outliers; −1 without any
+  double worst_share = 0;       // that share
+  double farthest = 0;          // m, the farthest outlier from where it is expected
+};
+
+// Measures the frames of a recording one after the other, as they are read. Deterministic.
+class ScatterSurvey {
+ public:
+  // `recording` must outlive the survey.
+  explicit ScatterSurvey(const Recording& recording) : recording_(recording) {}
+
+  void Add(const Frame& frame);
+  RecordingScatter Result() const;
+
+ private:
+  void AddSurface(const Frame& frame);
+  RecordingScatter OfSurfaces() const;
+  RecordingScatter OfTracks() const;
+
+  const Recording& recording_;
+  // Of the scans added so far, one entry per frame in which the scatter is known:
+  std::vector<int> frames_;
+  std::vector<double> deviations_, spacings_, outlier_shares_;  // m, m, –
+  std::vector<bool> is_upper_bound_;
+  double farthest_ = 0;  // m
+  // Of the tracked points added so far: places by row (3 × rows, NaN: not seen), one per frame.
+  std::vector<int> tracked_frames_;
+  std::vector<Eigen::Matrix3Xd> places_;
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_EXPERIMENT_RECORDING_SCATTER_H_
