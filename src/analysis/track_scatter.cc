@@ -13,9 +13,6 @@ namespace {
 // least kFewestAtRest frames.
 constexpr double kRestThreshold = 2.5;
 constexpr int kFewestAtRest = 8;
-// Sixth differences of white noise agree with the lower ones to some 10 %, while motion that is not
-// resolved makes the orders differ by multiples.
-constexpr double kMotionRatio = 1.5;
 constexpr double kOutlierDeviations = 5;
 constexpr double kUpperQuartile = 1.1503;  // Φ⁻¹(7/8): of |x|, x normal with σ = 1
 constexpr int kReach = 2;                  // frames before and after that a place is compared with
@@ -69,10 +66,7 @@ TrackNoise EstimateTrackNoise(const Eigen::VectorXd& times, const Eigen::MatrixX
        StaticSpans(times, positions, kRestThreshold * std::sqrt(6.0) * white, kFewestAtRest))
     if (!std::isnan(rest.deviation)) least = std::min(least, rest.deviation);
   noise.is_at_rest = std::isfinite(least);
-  if (noise.is_at_rest)
-    noise.deviation = least;
-  else
-    noise.is_upper_bound = !(white <= kMotionRatio * DifferenceNoise(positions, 6));
+  if (noise.is_at_rest) noise.deviation = least;
   return noise;
 }
 

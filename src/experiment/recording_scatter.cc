@@ -132,14 +132,14 @@ RecordingScatter ScatterSurvey::OfTracks() const {
     times[static_cast<Eigen::Index>(f)] = recording_.times[frames[f]];
   const TrackNoise noise = EstimateTrackNoise(times, scaled);
   result.typical = noise.deviation;
-  result.is_upper_bound = noise.is_upper_bound;
+  result.is_upper_bound = !noise.is_at_rest;
   result.is_at_rest = noise.is_at_rest;
   if (std::isnan(noise.deviation)) return result;
   for (Eigen::Index m = 0; m < count; ++m) {
     const TrackNoise own = EstimateTrackNoise(times, tracks.middleRows<3>(3 * m));
     if (!(own.deviation > result.largest)) continue;
     // Fast motion of this point is not its scatter.
-    if (own.is_upper_bound && !noise.is_upper_bound) continue;
+    if (noise.is_at_rest && !own.is_at_rest) continue;
     result.largest = own.deviation;
     result.largest_in = has_names ? fmt::format("marker {}", markers.names[chosen[m]])
                                   : fmt::format("row {}", chosen[m]);

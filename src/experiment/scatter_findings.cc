@@ -106,11 +106,10 @@ void AddDoubtOfOutliers(const RecordingScatter& scatter, std::vector<std::string
 }
 
 void AddDoubtOfLargest(const RecordingScatter& scatter, std::vector<std::string>* doubts) {
-  if (scatter.typical < kNoScatter || scatter.is_upper_bound ||
+  // A marker that moves faster than the others, or while they rest, shows motion, not scatter.
+  if (!scatter.is_of_surface || scatter.is_upper_bound || scatter.typical < kNoScatter ||
       scatter.largest <= kUnlikeOthers * scatter.typical)
     return;
-  // A point that moves while the others rest shows motion, not scatter.
-  if (scatter.is_at_rest) return;
   doubts->push_back(fmt::format("{} scatters by {}, {:.2g} times the typical {}",
                                 scatter.largest_in, InMillimetres(scatter.largest),
                                 scatter.largest / scatter.typical, InMillimetres(scatter.typical)));

@@ -25,9 +25,9 @@ struct StatedNoise {
 std::string DescribeScatter(const RecordingScatter& scatter, const StatedNoise& noise = {});
 
 // Sentences about scatter that is more than three times the stated noise, that exceeds half of the
-// spacing of the points, that is three times the typical one in some frame or of some marker (not
-// where the noise was measured while the points rest, because a point that moves then shows
-// motion), and about outliers. Each says what to write or what to look at.
+// spacing of the points, that is three times the typical one in some frame of a scan, and about
+// outliers. What is an upper bound is not compared with the stated noise. Each says what to write
+// or what to look at.
 std::vector<std::string> DoubtsOfScatter(const RecordingScatter& scatter, const StatedNoise& noise);
 
 struct ExaminedRecording {

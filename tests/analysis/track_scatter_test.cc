@@ -34,19 +34,18 @@ TEST(TrackScatter, NoiseIsFoundUnderSmoothMotion) {
   // 24 rows of 300 frames determine it to 3 %, and the motion adds a few per cent.
   EXPECT_NEAR(noise.deviation, kNoise, 0.1 * kNoise);
   EXPECT_FALSE(noise.is_at_rest);
-  EXPECT_FALSE(noise.is_upper_bound);
 }
 
 TEST(TrackScatter, SmoothMotionIsNone) {
   const TrackNoise noise = EstimateTrackNoise(Times(), Swinging(0));
   EXPECT_LT(noise.deviation, 1e-7);  // fourth differences of the swing: 20 mm (2π/100)⁴ / √70
-  EXPECT_TRUE(noise.is_upper_bound);
+  EXPECT_FALSE(noise.is_at_rest);
 }
 
 TEST(TrackScatter, MotionBetweenFewFramesIsABound) {
   const TrackNoise noise = EstimateTrackNoise(Times().head(5), Swinging(kNoise).leftCols(5));
   EXPECT_GT(noise.deviation, 0);
-  EXPECT_TRUE(noise.is_upper_bound);
+  EXPECT_FALSE(noise.is_at_rest);
   EXPECT_TRUE(std::isnan(EstimateTrackNoise(Times().head(2), Swinging(0).leftCols(2)).deviation));
 }
 

@@ -1,4 +1,5 @@
 // What is not known of a body that hangs under its own weight: its density and where its clamp is.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -132,22 +133,27 @@ TEST(HangingBar, LeavesTheModulusAsUncertainAsTheDensity) {
 TEST(HangingBar, IsReadBackWithTheDensityThatWasFitted) {
   const TemporaryFolder folder;
   WriteBarRecording(folder.Path(), FilmHangingBar());
+  const auto run = [&](const std::string& text) {
+    std::ofstream(folder / "study.yaml") << text;
+    ProgressOptions silent;
+    silent.style = ProgressStyle::kSilent;
+    Progress progress(silent);
+    return RunCalibration(ReadPredictionStudy(Config::Load(folder / "study.yaml")), &progress);
+  };
+  const CalibrationRecord exact = run(HangingExperiment(folder.Path(), ""));
+  ASSERT_TRUE(exact.usable) << exact.message;
+  const double modulus = exact.parameters.at(0).estimate.value;  // with 1000 kg/m³
   // The moduli of a denser bar are larger; a modulus known beforehand decides the density instead.
   std::string text = HangingExperiment(folder.Path(), "density_deviation: 0.2\n");
   const std::string name = "{name: young_modulus}";
   text.replace(text.find(name), name.size(),
-               "{name: young_modulus, mean: 330 kPa, deviation: 1 kPa}");
-  std::ofstream(folder / "study.yaml") << text;
-  const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "study.yaml"));
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
-  const CalibrationRecord record = RunCalibration(study, &progress);
+               fmt::format("{{name: young_modulus, mean: {} Pa, deviation: {} Pa}}", 1.1 * modulus,
+                           0.003 * modulus));
+  const CalibrationRecord record = run(text);
   ASSERT_TRUE(record.usable) << record.message;
   ASSERT_EQ(record.parameters.at(1).name, "density");
-  // ρ = E · 1000 kg/m³ / 300 kPa = 1100 kg/m³; coarser elements are up to 4 % stiffer, noise is 1
-  // %.
-  EXPECT_NEAR(record.parameters[1].estimate.value, 1110, 40);
+  // E/ρ is that of the exact density. The prior of the density moves it by (1/20)² of 10 %.
+  EXPECT_NEAR(record.parameters[1].estimate.value, 1100, 5);
   for (const HeldParameter& held : record.held)
     EXPECT_FALSE(held.name.find("density") != std::string::npos) << held.name;
 

@@ -117,10 +117,8 @@ TEST_F(RecordingScatterTest, NoiseThatIsStatedTooSmallIsDoubtedAndALargeOneNoted
   EXPECT_THAT(noted.scatter, AllOf(HasSubstr("the points scatter by 0."),
                                    HasSubstr("the stated `fit: {noise: 2 mm}` is")));
   EXPECT_THAT(ExamineRecording(scans, {0.3e-3, "fit.noise"}).scatter, Not(HasSubstr("the stated")));
-  const Recording swing = Swing(0.1);
-  EXPECT_THAT(ExamineRecording(swing, {0.01e-3, "noise"}).findings,
-              ElementsAre(HasSubstr("times the stated `noise: 0.01 mm`")));
-  EXPECT_THAT(ExamineRecording(swing, {1e-3, "noise"}).findings, IsEmpty());
+  // Markers that never rest may vibrate.
+  EXPECT_THAT(ExamineRecording(Swing(0.1), {0.01e-3, "noise"}).findings, IsEmpty());
 }
 
 TEST_F(RecordingScatterTest, ScatterThatExceedsHalfOfTheSpacingIsReported) {
@@ -149,7 +147,7 @@ TEST_F(RecordingScatterTest, OfMarkersIsThatOfACoordinate) {
   EXPECT_FALSE(scatter.is_of_surface);
   // 18 coordinates of 120 frames determine it to some 6 %, and the motion adds a few per cent.
   EXPECT_NEAR(scatter.typical, 1e-4, 2e-5);
-  EXPECT_FALSE(scatter.is_upper_bound);
+  EXPECT_TRUE(scatter.is_upper_bound);
   EXPECT_EQ(scatter.outlier_share, 0);
   EXPECT_THAT(scatter.largest_in, HasSubstr("marker m"));
 }
