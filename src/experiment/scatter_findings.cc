@@ -88,21 +88,18 @@ void AddDoubtOfSpacing(const RecordingScatter& scatter, double voxel,
                   ScatterBy(scatter), reason, InMillimetres(enough)));
 }
 
+// Of scans only: markers that leave their tracks for a frame may be exchanged, or the body was hit
+// or let go there, which the description of the scatter mentions.
 void AddDoubtOfOutliers(const RecordingScatter& scatter, std::vector<std::string>* doubts) {
-  if (!(scatter.outlier_share > kManyOutliers) &&
-      (!scatter.is_of_surface || scatter.worst_share <= kManyInFrame))
+  if (!scatter.is_of_surface ||
+      (!(scatter.outlier_share > kManyOutliers) && !(scatter.worst_share > kManyInFrame)))
     return;
   doubts->push_back(fmt::format(
-      "{} of the points are outliers, more than five standard deviations off {} and up to {}; most "
-      "in frame {}, {}. {}",
-      InPercent(scatter.outlier_share),
-      scatter.is_of_surface ? "the surface through their neighbours" : "their motion",
-      InMillimetres(scatter.farthest), scatter.worst_frame, InPercent(scatter.worst_share),
-      scatter.is_of_surface
-          ? "`crop` under `frames` leaves out what is beside the object, and a smaller "
-            "`outlier_deviations` under `filter` more of the rest"
-          : "Exchanged or wrongly recognised points look so: correct them, leave them out of the "
-            "file, or choose frames with `from`, `to` and `every`"));
+      "{} of the points are outliers, more than five standard deviations off the surface through "
+      "their neighbours and up to {}; most in frame {}, {}. `crop` under `frames` leaves out what "
+      "is beside the object, and a smaller `outlier_deviations` under `filter` more of the rest",
+      InPercent(scatter.outlier_share), InMillimetres(scatter.farthest), scatter.worst_frame,
+      InPercent(scatter.worst_share)));
 }
 
 void AddDoubtOfLargest(const RecordingScatter& scatter, std::vector<std::string>* doubts) {
@@ -130,7 +127,8 @@ std::string DescribeScatter(const RecordingScatter& scatter, const StatedNoise& 
   if (scatter.spacing > 0)
     text += fmt::format("; their spacing is {}", InMillimetres(scatter.spacing));
   if (!std::isnan(scatter.outlier_share))
-    text += fmt::format("; {} are outliers", InPercent(scatter.outlier_share));
+    text += fmt::format("; {} {}", InPercent(scatter.outlier_share),
+                        scatter.is_of_surface ? "are outliers" : "leave their track for a frame");
   if (scatter.worst_frame >= 0)
     text +=
         fmt::format(", most in frame {}, {}", scatter.worst_frame, InPercent(scatter.worst_share));

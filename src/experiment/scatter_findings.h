@@ -26,8 +26,8 @@ std::string DescribeScatter(const RecordingScatter& scatter, const StatedNoise& 
 
 // Sentences about scatter that is more than three times the stated noise, that exceeds half of the
 // spacing of the points, that is three times the typical one in some frame of a scan, and about
-// outliers. What is an upper bound is not compared with the stated noise. Each says what to write
-// or what to look at.
+// outliers of scans. What is an upper bound is not compared with the stated noise. Each says what
+// to write or what to look at.
 std::vector<std::string> DoubtsOfScatter(const RecordingScatter& scatter, const StatedNoise& noise);
 
 struct ExaminedRecording {
