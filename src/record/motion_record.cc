@@ -11,6 +11,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "geometry/thinned_surface.h"
+#include "record/json_hash.h"
 #include "record/json_vector.h"
 #include "record/packed_array.h"
 #include "record/schema_version.h"
@@ -90,14 +91,15 @@ void WriteMotionFile(const MotionRecord& record, const std::filesystem::path& fi
         static_cast<Eigen::Index>(record.scans.size()) == record.times.size());
   std::vector<std::string> notes = record.notes;
   const json points = ScansToJson(record.scans, &notes);
-  const json document{{"schema_version", kSchemaVersion},
-                      {"fit", record.fit},
-                      {"recording", record.recording},
-                      {"times", VectorToJson(record.times)},
-                      {"up", record.up ? VectorToJson(*record.up) : json()},
-                      {"surface", SurfaceToJson(record)},
-                      {"points", points},
-                      {"notes", notes}};
+  json document{{"schema_version", kSchemaVersion},
+                {"fit", record.fit},
+                {"recording", record.recording},
+                {"times", VectorToJson(record.times)},
+                {"up", record.up ? VectorToJson(*record.up) : json()},
+                {"surface", SurfaceToJson(record)},
+                {"points", points},
+                {"notes", notes}};
+  document["hash"] = HashWithout(document, {"/hash"});
   WriteFileAtomically(file, document.dump() + "\n");
 }
 
@@ -108,6 +110,9 @@ StoredMotion ReadMotionFile(const std::filesystem::path& file) {
     const json document = json::parse(stream);
     return NamingWhere(file.string(), [&] {
       RequireSchemaVersion(document, kSchemaVersion, "lacuna compare");
+      // Files of earlier versions have no hash.
+      if (document.contains("hash") && document["hash"] != HashWithout(document, {"/hash"}))
+        throw InputError({file.string()}, "is damaged; `lacuna compare` writes it again");
       return StoredMotion{document.at("fit"),
                           document.at("recording"),
                           document.at("times"),
