@@ -151,28 +151,22 @@ Eigen::VectorXd RmsOfFrames(const Eigen::MatrixXd& lengths) {
   return rms;
 }
 
-double DifferenceNoise(const Eigen::MatrixXd& positions, int order) {
-  CHECK_GE(order, 1);
-  Eigen::VectorXd weight = Eigen::VectorXd::Zero(order + 1);
-  weight[0] = 1;
-  for (int k = 0; k < order; ++k)  // (1 − shift)^order
-    for (int j = k + 1; j > 0; --j) weight[j] -= weight[j - 1];
-  std::vector<double> of_rows;
-  for (Eigen::Index row = 0; row < positions.rows(); ++row) {
-    std::vector<double> differences;
-    for (Eigen::Index f = 0; f + weight.size() <= positions.cols(); ++f) {
-      const double value = positions.row(row).segment(f, weight.size()) * weight;
-      if (!std::isnan(value)) differences.push_back(std::abs(value));
-    }
-    if (!differences.empty())
-      of_rows.push_back(Median(std::move(differences)) / (0.6745 * weight.norm()));
-  }
-  return Median(std::move(of_rows));
-}
-
 double WhiteNoise(const Eigen::MatrixXd& positions) {
-  const double second = DifferenceNoise(positions, 2);
-  const double fourth = DifferenceNoise(positions, 4);
+  const auto from_differences = [&](const Eigen::VectorXd& weight) {
+    std::vector<double> of_rows;
+    for (Eigen::Index row = 0; row < positions.rows(); ++row) {
+      std::vector<double> differences;
+      for (Eigen::Index f = 0; f + weight.size() <= positions.cols(); ++f) {
+        const double value = positions.row(row).segment(f, weight.size()) * weight;
+        if (!std::isnan(value)) differences.push_back(std::abs(value));
+      }
+      if (!differences.empty())
+        of_rows.push_back(Median(std::move(differences)) / (0.6745 * weight.norm()));
+    }
+    return Median(std::move(of_rows));
+  };
+  const double second = from_differences(Eigen::Vector3d(1, -2, 1));
+  const double fourth = from_differences((Eigen::VectorXd(5) << 1, -4, 6, -4, 1).finished());
   return fourth < second ? fourth : second;
 }
 

@@ -30,18 +30,11 @@ Eigen::VectorXd RmsOfFrames(const Eigen::MatrixXd& lengths);
 // Subtracts from each row the mean of its entries that are not NaN.
 Eigen::MatrixXd Centred(Eigen::MatrixXd series);
 
-// The standard deviation of measured coordinates (rows) from their differences of this order (≥ 1)
-// between consecutive frames. For each row it is the median of the absolute differences, divided by
-// 0.6745 times the root of the sum of the squared binomial coefficients (√6 for second differences,
-// √70 for fourth), and the result is the median over the rows. It is σ where the noise is white and
-// the motion smooth over order + 1 frames; motion increases it, and a higher order less. NaN if no
-// row was seen in order + 1 consecutive frames.
-double DifferenceNoise(const Eigen::MatrixXd& positions, int order);
-
-// The standard deviation σ of the white part of measured coordinates (rows), from second or from
-// fourth differences (DifferenceNoise), whichever gives less, because motion that is fast for the
-// frame rate contributes less to the latter. Noise that is correlated over frames is hardly
-// included. NaN if no three consecutive frames are available.
+// The standard deviation σ of the white part of measured coordinates (rows). For each row it is the
+// median of the absolute second differences, divided by 0.6745 √6, and the result is the median
+// over the rows. Fourth differences (with √70) are used instead if they give less, because motion
+// that is fast for the frame rate contributes less to them. Noise that is correlated over frames is
+// hardly included. NaN if no three consecutive frames are available.
 double WhiteNoise(const Eigen::MatrixXd& positions);
 
 // A range of consecutive frames in which all points are at rest.

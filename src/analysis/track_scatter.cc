@@ -19,6 +19,9 @@ constexpr int kReach = 2;                  // frames before and after that a pla
 constexpr double kUnevenTimes = 0.05;  // largest difference of a step from the mean of its window
 constexpr Eigen::Index kFewestPoints = 5;  // of a frame, so that one is less than a quarter
 
+// White noise of deviation σ differs by this many σ from the cubic through its neighbours in time.
+const double kFromCubic = std::sqrt(70.0) / 6;
+
 // Whether the frames that frame f is compared with are equally spaced in time.
 bool IsEvenlySpaced(const Eigen::VectorXd& times, Eigen::Index f) {
   const double mean = (times[f + kReach] - times[f - kReach]) / (2 * kReach);
@@ -30,7 +33,6 @@ bool IsEvenlySpaced(const Eigen::VectorXd& times, Eigen::Index f) {
 // The absolute difference of each coordinate from the cubic through its neighbours in time, in
 // units in which white noise of deviation σ has the deviation σ. NaN where it is not known.
 Eigen::MatrixXd DistancesFromCubic(const Eigen::VectorXd& times, const Eigen::MatrixXd& positions) {
-  const double scale = std::sqrt(70.0) / 6;
   Eigen::MatrixXd distances =
       Eigen::MatrixXd::Constant(positions.rows(), positions.cols(), kUnknown);
   for (Eigen::Index f = kReach; f + kReach < positions.cols(); ++f) {
@@ -38,7 +40,7 @@ Eigen::MatrixXd DistancesFromCubic(const Eigen::VectorXd& times, const Eigen::Ma
     const Eigen::VectorXd expected = (4 * (positions.col(f - 1) + positions.col(f + 1)) -
                                       positions.col(f - 2) - positions.col(f + 2)) /
                                      6;
-    distances.col(f) = (positions.col(f) - expected).cwiseAbs() / scale;
+    distances.col(f) = (positions.col(f) - expected).cwiseAbs() / kFromCubic;
   }
   return distances;
 }
@@ -100,7 +102,7 @@ TrackOutliers FindTrackOutliers(const Eigen::VectorXd& times, const Eigen::Matri
       for (Eigen::Index g = begin; g < end; ++g) is_largest &= !(largest(p, g) > distance);
       if (!is_largest) continue;
       ++in_frame;
-      outliers.farthest = std::max(outliers.farthest, distance * std::sqrt(70.0) / 6);
+      outliers.farthest = std::max(outliers.farthest, kFromCubic * distance);
     }
     found += in_frame;
     if (in_frame <= outliers.in_worst_frame) continue;

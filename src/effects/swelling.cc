@@ -16,12 +16,13 @@
 #include <glog/logging.h>
 
 #include "effects/catalogue.h"
+#include "effects/free_strain.h"
 #include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
 
-class SwellingEffect final : public CloneableEffect<SwellingEffect> {
+class SwellingEffect final : public CloneableEffect<SwellingEffect, FreeStrain> {
  public:
   static const EffectCard& TheCard() {
     static const EffectCard card = MakeCard();
@@ -38,84 +39,36 @@ class SwellingEffect final : public CloneableEffect<SwellingEffect> {
     strain_ = values[0];
   }
 
-  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
-    AddDifference(
-        at, Stretch() * Stretch(),
-        [&](const Kinematics& where, Eigen::VectorXd* of_law) { Law(at).AddForce(where, of_law); },
-        force);
-  }
-
   bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
-    AddDifference(
-        at, Stretch() * Stretch(),
-        [&](const Kinematics& where, Eigen::Matrix3Xd* of_law) {
-          Law(at).AddStress(where, of_law);
-        },
-        stress);
+    if (strain_ == 0) return true;
+    Eigen::Matrix3Xd of_law = Eigen::Matrix3Xd::Zero(3, stress->cols());
+    WithElasticPart(at, [&](const ElasticPart& elastic) {
+      Law(at).AddStress(elastic.state, &of_law);
+      *stress += elastic.of_force * of_law;
+    });
+    of_law.setZero();
+    Law(at).AddStress(AsSeenByLaw(at, at.body, at.position), &of_law);
+    *stress -= of_law;
     return true;
-  }
-
-  // With `convexify` nothing: the law's own approximation stands for both.
-  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
-                   BlockMatrix* tangent) const override {
-    if (strain_ == 0 || weights.position == 0 || convexify) return;
-    const ElasticPart elastic(at, Stretch());
-    Law(at).AddTangents(elastic.kinematics, {.position = weights.position * Stretch()}, false,
-                        tangent);
-    Law(at).AddTangents(elastic.Unswollen(at), {.position = -weights.position}, false, tangent);
   }
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
     CHECK_EQ(parameter, 0);
-    const ElasticPart elastic(at, Stretch());
-    Eigen::VectorXd of_law = Eigen::VectorXd::Zero(derivative->size());
-    Law(at).AddForce(elastic.kinematics, &of_law);
-    *derivative += 2 * Stretch() * of_law;
-    BlockMatrix stiffness(at.body.pattern);
-    Law(at).AddTangents(elastic.kinematics, {.position = 1}, false, &stiffness);
-    stiffness.Multiply(at.position, &of_law);
-    *derivative -= of_law;
-  }
-
-  void AddElasticityDerivative(const Kinematics& at, int parameter,
-                               Eigen::VectorXd* derivative) const override {
-    AddDifference(
-        at, Stretch() * Stretch(),
-        [&](const Kinematics& where, Eigen::VectorXd* of_law) {
-          Law(at).AddParameterDerivative(where, parameter, of_law);
-        },
-        derivative);
-  }
-
-  std::optional<double> Energy(const Kinematics& at) const override {
-    if (strain_ == 0) return 0.0;
-    const ElasticPart elastic(at, Stretch());
-    const std::optional<double> stored = Law(at).Energy(elastic.kinematics);
-    const std::optional<double> unswollen = Law(at).Energy(elastic.Unswollen(at));
-    if (!stored || !unswollen) return std::nullopt;
-    return Stretch() * Stretch() * Stretch() * *stored - *unswollen;
+    WithElasticPart(at, [&](const ElasticPart& elastic) {
+      AddForceAndStiffness(at, elastic.state, 2 * Stretch(), derivative);
+    });
   }
 
  private:
-  // The state x/s at which the law sees the elastic part of the deformation. Elasticity laws have
-  // no memory and do not depend on velocities.
-  struct ElasticPart {
-    ElasticPart(const Kinematics& at, double stretch)
-        : position(at.position / stretch), kinematics{at.body,         position,     at.velocity,
-                                                      at.acceleration, at.time,      at.time_step,
-                                                      no_memory,       at.elasticity} {}
-    ElasticPart(const ElasticPart&) = delete;
-    ElasticPart& operator=(const ElasticPart&) = delete;
+  bool IsNone() const override { return strain_ == 0; }
 
-    Kinematics Unswollen(const Kinematics& at) const {
-      return {at.body, at.position,  at.velocity, at.acceleration,
-              at.time, at.time_step, no_memory,   at.elasticity};
-    }
-
-    const Eigen::VectorXd position, no_memory;
-    const Kinematics kinematics;
-  };
+  void WithElasticPart(const Kinematics& at,
+                       const std::function<void(const ElasticPart&)>& use) const override {
+    const double s = Stretch();
+    const Eigen::VectorXd position = at.position / s;
+    use({AsSeenByLaw(at, at.body, position), s * s, s, s * s * s});
+  }
 
   static EffectCard MakeCard() {
     return {.type = "swelling",
@@ -150,24 +103,6 @@ class SwellingEffect final : public CloneableEffect<SwellingEffect> {
   }
 
   double Stretch() const { return 1 + strain_; }
-
-  static const Effect& Law(const Kinematics& at) {
-    CHECK(at.elasticity != nullptr) << "swelling is relative to an elasticity law";
-    return *at.elasticity;
-  }
-
-  // Adds scale · q(x/s) − q(x), where add(where, &q) adds nodal forces or stresses q of the law.
-  template <typename Add, typename Values>
-  void AddDifference(const Kinematics& at, double scale, const Add& add, Values* result) const {
-    if (strain_ == 0) return;
-    const ElasticPart elastic(at, Stretch());
-    Values of_law = Values::Zero(result->rows(), result->cols());
-    add(elastic.kinematics, &of_law);
-    *result += scale * of_law;
-    of_law.setZero();
-    add(elastic.Unswollen(at), &of_law);
-    *result -= of_law;
-  }
 
   double strain_ = 0;  // ε
 };

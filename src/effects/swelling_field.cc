@@ -20,6 +20,7 @@
 #include "core/expression.h"
 #include "core/quoted_text.h"
 #include "effects/catalogue.h"
+#include "effects/free_strain.h"
 #include "effects/rest_quantity.h"
 #include "fem/cloneable_effect.h"
 
@@ -63,7 +64,7 @@ const EffectCard& TheCard() {
   return card;
 }
 
-class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect> {
+class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect, FreeStrain> {
  public:
   SwellingFieldEffect(double strain, Expression field)
       : strain_(strain), field_(std::make_shared<const Expression>(std::move(field))) {}
@@ -77,34 +78,18 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect> {
     swollen_.Forget();
   }
 
-  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
-    AddDifference(
-        at,
-        [&](const Kinematics& where, Eigen::VectorXd* of_law) { Law(at).AddForce(where, of_law); },
-        force);
-  }
-
   bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
     if (strain_ == 0) return true;
     const auto swollen = Swollen(at.body);
     Eigen::Matrix3Xd of_law = Eigen::Matrix3Xd::Zero(3, stress->cols());
-    Law(at).AddStress(On(*swollen, at), &of_law);
+    Law(at).AddStress(AsSeenByLaw(at, *swollen, at.position), &of_law);
     const Eigen::VectorXd stretch = Stretches(at.body);
     for (Eigen::Index q = 0; q < stretch.size(); ++q)
       stress->middleCols<3>(3 * q) += stretch[q] * stretch[q] * of_law.middleCols<3>(3 * q);
     of_law.setZero();
-    Law(at).AddStress(On(at.body, at), &of_law);
+    Law(at).AddStress(AsSeenByLaw(at, at.body, at.position), &of_law);
     *stress -= of_law;
     return true;
-  }
-
-  // With `convexify` nothing: the law's own approximation stands for both.
-  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
-                   BlockMatrix* tangent) const override {
-    if (strain_ == 0 || weights.position == 0 || convexify) return;
-    const auto swollen = Swollen(at.body);
-    Law(at).AddTangents(On(*swollen, at), {.position = weights.position}, false, tangent);
-    Law(at).AddTangents(On(at.body, at), {.position = -weights.position}, false, tangent);
   }
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
@@ -113,44 +98,16 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect> {
     const Eigen::VectorXd stretch = Stretches(at.body);
     Body weighted = MakeSwollen(at.body, stretch);
     weighted.weight.array() *= FieldAtPoints(at.body)->array() / stretch.array();
-    Eigen::VectorXd of_law = Eigen::VectorXd::Zero(derivative->size());
-    Law(at).AddForce(On(weighted, at), &of_law);
-    *derivative += 2 * of_law;
-    BlockMatrix stiffness(at.body.pattern);
-    Law(at).AddTangents(On(weighted, at), {.position = 1}, false, &stiffness);
-    stiffness.Multiply(at.position, &of_law);
-    *derivative -= of_law;
-  }
-
-  void AddElasticityDerivative(const Kinematics& at, int parameter,
-                               Eigen::VectorXd* derivative) const override {
-    AddDifference(
-        at,
-        [&](const Kinematics& where, Eigen::VectorXd* of_law) {
-          Law(at).AddParameterDerivative(where, parameter, of_law);
-        },
-        derivative);
-  }
-
-  std::optional<double> Energy(const Kinematics& at) const override {
-    if (strain_ == 0) return 0.0;
-    const auto swollen = Swollen(at.body);
-    const std::optional<double> stored = Law(at).Energy(On(*swollen, at));
-    const std::optional<double> unswollen = Law(at).Energy(On(at.body, at));
-    if (!stored || !unswollen) return std::nullopt;
-    return *stored - *unswollen;
+    AddForceAndStiffness(at, AsSeenByLaw(at, weighted, at.position), 2, derivative);
   }
 
  private:
-  static const Effect& Law(const Kinematics& at) {
-    CHECK(at.elasticity != nullptr) << "swelling is relative to an elasticity law";
-    return *at.elasticity;
-  }
+  bool IsNone() const override { return strain_ == 0; }
 
-  // The same state of another body with the same nodes, as the elasticity law sees it.
-  Kinematics On(const Body& body, const Kinematics& at) const {
-    return {body,    at.position,  at.velocity, at.acceleration,
-            at.time, at.time_step, no_memory_,  at.elasticity};
+  void WithElasticPart(const Kinematics& at,
+                       const std::function<void(const ElasticPart&)>& use) const override {
+    const auto swollen = Swollen(at.body);
+    use({AsSeenByLaw(at, *swollen, at.position)});
   }
 
   // g at the quadrature points.
@@ -187,22 +144,8 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect> {
                        [this](const Body& rest) { return MakeSwollen(rest, Stretches(rest)); });
   }
 
-  // Adds q(swollen body) − q(body), where add(where, &q) adds nodal forces q of the law.
-  template <typename Add>
-  void AddDifference(const Kinematics& at, const Add& add, Eigen::VectorXd* result) const {
-    if (strain_ == 0) return;
-    const auto swollen = Swollen(at.body);
-    Eigen::VectorXd of_law = Eigen::VectorXd::Zero(result->size());
-    add(On(*swollen, at), &of_law);
-    *result += of_law;
-    of_law.setZero();
-    add(On(at.body, at), &of_law);
-    *result -= of_law;
-  }
-
   double strain_ = 0;                        // ε₀
   std::shared_ptr<const Expression> field_;  // g
-  Eigen::VectorXd no_memory_;                // elasticity laws have no internal variables
   RestQuantity<Eigen::VectorXd> at_points_;  // g, shared by copies with another strain
   RestQuantity<Body> swollen_;
 };

@@ -133,7 +133,6 @@ RecordingScatter ScatterSurvey::OfTracks() const {
   const TrackNoise noise = EstimateTrackNoise(times, scaled);
   result.typical = noise.deviation;
   result.is_upper_bound = !noise.is_at_rest;
-  result.is_at_rest = noise.is_at_rest;
   if (std::isnan(noise.deviation)) return result;
   for (Eigen::Index m = 0; m < count; ++m) {
     const TrackNoise own = EstimateTrackNoise(times, tracks.middleRows<3>(3 * m));

@@ -19,15 +19,16 @@ struct RecordingScatter {
   // m, σ: of scans the median over the frames, of tracks that of all of them together, or of a
   // marker of weight 1 where they have weights. NaN where nothing can be said.
   double typical = std::numeric_limits<double>::quiet_NaN();
-  bool is_upper_bound = false;  // it includes shape or motion that the recording does not resolve
-  bool is_at_rest = false;      // of tracks: it is that of frames in which the points rest
-  double largest = 0;           // m, σ of the frame, marker or tracked point that scatters most
-  std::string largest_in;       // its name: "frame 7", "marker tip", "row 12"
-  double spacing = 0;           // m, of the points of a cloud (median over the frames); 0: none
-  double outlier_share = 0;     // of all points in all frames; NaN where none could be judged
-  int worst_frame = -1;         // the frame with the largest share of outliers; −1 without any
-  double worst_share = 0;       // that share
-  double farthest = 0;          // m, the farthest outlier from where it is expected
+  // It includes shape or motion that the recording does not resolve. Of tracks: it is not that of
+  // frames in which the points rest.
+  bool is_upper_bound = false;
+  double largest = 0;        // m, σ of the frame, marker or tracked point that scatters most
+  std::string largest_in;    // its name: "frame 7", "marker tip", "row 12"
+  double spacing = 0;        // m, of the points of a cloud (median over the frames); 0: none
+  double outlier_share = 0;  // of all points in all frames; NaN where none could be judged
+  int worst_frame = -1;      // the frame with the largest share of outliers; −1 without any
+  double worst_share = 0;    // that share
+  double farthest = 0;       // m, the farthest outlier from where it is expected
 };
 
 // Measures the frames of a recording one after the other, as they are read. Deterministic.

@@ -42,8 +42,8 @@ std::string ScatterBy(const RecordingScatter& scatter) {
                      scatter.is_upper_bound ? "at most " : "", InMillimetres(scatter.typical),
                      scatter.is_of_surface
                          ? "along the normal of the surface through their neighbours"
-                     : scatter.is_at_rest ? "each coordinate while they rest"
-                                          : "each coordinate about their motion");
+                     : scatter.is_upper_bound ? "each coordinate about their motion"
+                                              : "each coordinate while they rest");
 }
 
 void AddDoubtOfStated(const RecordingScatter& scatter, const StatedNoise& noise,

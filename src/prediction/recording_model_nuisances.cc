@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
-#include <Eigen/Geometry>
 #include <utility>
 
 #include "core/error.h"
 #include "experiment/reference_body.h"
 #include "fem/prescribed_force.h"
+#include "geometry/rotation.h"
 #include "prediction/predicted_motion.h"
 
 namespace lacuna {
@@ -148,8 +148,7 @@ Eigen::Isometry3d RecordingModel::Registration(const Eigen::VectorXd& nuisance) 
   Eigen::Isometry3d registration = Eigen::Isometry3d::Identity();
   if (shift.isZero(0) && turn.isZero(0)) return registration;
   const Eigen::Vector3d middle = Middle();
-  const double angle = turn.norm();
-  if (angle > 0) registration.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  registration.linear() = RotationBy(turn);
   registration.translation() = middle + shift - registration.linear() * middle;
   return registration;
 }

@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "geometry/thinned_surface.h"
 #include "record/json_hash.h"
 #include "record/json_vector.h"
@@ -99,7 +100,7 @@ void WriteMotionFile(const MotionRecord& record, const std::filesystem::path& fi
                 {"surface", SurfaceToJson(record)},
                 {"points", points},
                 {"notes", notes}};
-  document["hash"] = HashWithout(document, {"/hash"});
+  document["hash"] = HashBytes(document.dump());
   WriteFileAtomically(file, document.dump() + "\n");
 }
 

@@ -2,6 +2,8 @@
 
 #include <glog/logging.h>
 
+#include "prediction/reading_times.h"
+
 namespace lacuna {
 namespace {
 
@@ -26,10 +28,8 @@ double CellDelay(const TrialCase& trial, int recording) {
 
 std::vector<double> CellTimes(const TrialCase& trial, int recording,
                               const std::vector<double>& stamps) {
-  std::vector<double> times;
-  if (!trial.load_cell) return times;
-  for (const double stamp : stamps) times.push_back(stamp - CellDelay(trial, recording));
-  return times;
+  if (!trial.load_cell) return {};
+  return Delayed(stamps, CellDelay(trial, recording));
 }
 
 MeasuredReaction CellReading(const TrialCase& trial, int recording,

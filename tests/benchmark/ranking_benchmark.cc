@@ -49,9 +49,7 @@ int Run(const std::string& file, int repeats) {
   const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
   const ReferenceBody reference = MakeReferenceBody(study);
   const CalibrationProblem problem(study, reference.mesh);
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const Eigen::VectorXd values = FitFromStart(problem, &progress).parameters;
   const std::vector<MisfitDirection> directions = DirectionsOfEffects(problem);
   std::vector<double> forward, tangents, pilots, nuisances, ranking;

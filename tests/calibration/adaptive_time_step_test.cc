@@ -16,9 +16,7 @@ class AdaptiveTimeStepOfABar : public testing::Test {
   AdaptiveTimeStepOfABar() { WriteBarRecording(folder_.Path(), FilmHeldBar(truth_)); }
 
   AdaptedFit Fit(PredictionStudy* study) const {
-    ProgressOptions silent;
-    silent.style = ProgressStyle::kSilent;
-    Progress progress(silent);
+    Progress progress({.style = ProgressStyle::kSilent});
     return FitWithAdaptiveTimeStep(BarMesh({8, 2, 2}, 2), study, &progress);
   }
 

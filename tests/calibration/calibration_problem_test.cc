@@ -26,9 +26,7 @@ namespace {
 TetMesh StudyMesh() { return BarMesh({7, 2, 2}, 2); }
 
 Calibration FitOf(const CalibrationProblem& problem) {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   return FitFromStart(problem, &progress);
 }
 

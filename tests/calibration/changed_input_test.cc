@@ -26,9 +26,7 @@ void ExpectRefusedAfterAChange(PredictionStudy study, const TemporaryFolder& fol
                                const std::string& name) {
   study.output = folder / "run";
   std::ofstream(folder / name, std::ios::app) << "\n";
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   EXPECT_THAT([&] { RunCalibration(study, &progress); },
               testing::ThrowsMessage<InputError>(
                   testing::AllOf(testing::HasSubstr(name), testing::HasSubstr("has changed"))));

@@ -88,9 +88,7 @@ recordings:
 }
 
 Calibration FitOf(const CalibrationProblem& problem) {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   return FitFromStart(problem, &progress);
 }
 

@@ -87,9 +87,7 @@ std::vector<std::string> NamesOf(const CalibrationProblem& problem) {
 }
 
 Calibration FitOf(const CalibrationProblem& problem) {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   return FitFromStart(problem, &progress);
 }
 
@@ -135,9 +133,7 @@ TEST(HangingBar, IsReadBackWithTheDensityThatWasFitted) {
   WriteBarRecording(folder.Path(), FilmHangingBar());
   const auto run = [&](const std::string& text) {
     std::ofstream(folder / "study.yaml") << text;
-    ProgressOptions silent;
-    silent.style = ProgressStyle::kSilent;
-    Progress progress(silent);
+    Progress progress({.style = ProgressStyle::kSilent});
     return RunCalibration(ReadPredictionStudy(Config::Load(folder / "study.yaml")), &progress);
   };
   const CalibrationRecord exact = run(HangingExperiment(folder.Path(), ""));
@@ -175,9 +171,7 @@ TEST(HangingBar, MovesAsItWasFittedWhenItIsReadBack) {
                       {"{name: young_modulus}, {name: mass_damping.alpha}",
                        "{name: young_modulus, mean: 110 kPa, deviation: 1 kPa}"}});
   const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "study.yaml"));
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const CalibrationRecord record = RunCalibration(study, &progress);
   ASSERT_TRUE(record.usable) << record.message;
   ASSERT_EQ(record.parameters.at(1).name, "density");

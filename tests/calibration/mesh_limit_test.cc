@@ -28,9 +28,7 @@ struct BarFit {
       : study(ReadBarStudy(folder, {{"max_volume: 1000 mm^3",
                                      "max_volume: " + volume + ", preserve_surface: false"}})),
         problem(study, MakeReferenceBody(study).mesh) {
-    ProgressOptions silent;
-    silent.style = ProgressStyle::kSilent;
-    Progress progress(silent);
+    Progress progress({.style = ProgressStyle::kSilent});
     calibration = FitFromStart(problem, &progress);
   }
 };

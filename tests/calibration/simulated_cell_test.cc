@@ -65,9 +65,7 @@ TEST(SimulatedCell, ItsTareAndDelayAreRecoveredByAFit) {
   const PredictionStudy study = StudyOf(folder / "played", {});
   EXPECT_TRUE(study.recordings.front().simulated_cells.empty());
   const CalibrationProblem problem(study, mesh);
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const Calibration fit = FitFromStart(problem, &progress);
   ASSERT_TRUE(fit.usable) << fit.message;
   ASSERT_EQ(fit.estimates.size(), 2u);

@@ -23,9 +23,7 @@ TEST(ComparedReaction, IsListedInNewtonsAndInItsNoise) {
   const TemporaryFolder folder;
   WritePulledBar(folder.Path(), {});
   std::ofstream(folder / "study.yaml") << PulledBarExperiment(folder.Path());
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const CalibrationRecord fit =
       RunCalibration(ReadPredictionStudy(Config::Load(folder / "study.yaml")), &progress);
   ASSERT_TRUE(fit.usable) << fit.message;

@@ -25,9 +25,7 @@ UnexplainedForce ForceOn(const HeldBarTruth& truth) {
                       {"alpha: 1 1/s", "alpha: 2 1/s"},
                       {"motion: {time_step: 1.5 ms}", "motion: {time_step: 2 ms}"}});
   const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 2));
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const Calibration calibration = FitFromStart(problem, &progress);
   EXPECT_TRUE(calibration.usable) << calibration.message;
   const RecordingModel model = problem.ModelAt(0, calibration.parameters);

@@ -14,9 +14,7 @@ Diagnosis DiagnoseBar(const HeldBarTruth& truth, const std::map<std::string, std
   const PredictionStudy study = ReadBarStudy(folder.Path(), replaced);
   const TetMesh mesh = BarMesh(cells, 2);
   const CalibrationProblem problem(study, mesh);
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const Calibration calibration = FitFromStart(problem, &progress);
   EXPECT_TRUE(calibration.usable) << calibration.message;
   return Diagnose(problem, calibration.parameters, options, &progress);

@@ -22,9 +22,7 @@ TEST(EffectRanking, TellsOfOtherDirectionsThatAreAsGood) {
   WriteBarRecording(folder.Path(), FilmHeldBar(truth));
   const PredictionStudy study = ReadBarStudy(folder.Path());
   const CalibrationProblem problem(study, BarMesh({7, 1, 1}, 2));
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const Calibration calibration = FitFromStart(problem, &progress);
   const EffectRanking ranking = RankEffects(problem, calibration.parameters, &progress);
   const auto fibres = std::find_if(
@@ -46,9 +44,7 @@ TEST(EffectRanking, TakesOverTheColumnsOfItsScene) {
   WriteBarRecording(folder.Path(), FilmHeldBar({}));
   const PredictionStudy study = ReadBarStudy(folder.Path());
   const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const EffectRanking first = RankEffects(problem, problem.Start(), &progress);
   ASSERT_TRUE(first.scene.pilots.has_value());
   const auto shape = [](const auto& nuisances) {

@@ -28,9 +28,7 @@ std::filesystem::path FitBar(const std::filesystem::path& folder, const std::str
                {"  - {type: mass_damping, alpha: 1 1/s}\n", ""},
                {", {name: mass_damping.alpha}", ""}});
   const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "bar.yaml"));
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   EXPECT_TRUE(RunCalibration(study, &progress).usable);
   return study.output;
 }
@@ -101,9 +99,7 @@ TEST(ExtendedExperiment, ALawOfTheUsersOwnIsRankedAndAddedLikeTheCatalogues) {
   const std::filesystem::path run =
       FitBar(folder.Path(), "\ncandidates:\n  - " + damping + "\n  - " + push);
   const FittedRun fitted = OpenRun(run);
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const EffectRanking ranking =
       RankEffects(CalibrationProblem(fitted.study, fitted.mesh), fitted.values, &progress);
   const auto scored = [&](const std::string& type) {
@@ -157,9 +153,7 @@ TEST(ExtendedExperiment, ARunFromTheExperimentsOwnFolderIsOpened) {
       folder.Path(), {{"max_volume: 1000 mm^3", "max_volume: 2000 mm^3, preserve_surface: false"}});
   std::filesystem::current_path(folder / "experiments");
   const PredictionStudy study = ReadPredictionStudy(Config::Load("bar.yaml"));
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   EXPECT_TRUE(RunCalibration(study, &progress).usable);
   EXPECT_NO_THROW(OpenRun(study.output));
   std::filesystem::current_path(before);

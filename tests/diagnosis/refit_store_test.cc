@@ -76,9 +76,7 @@ TEST(RefitStore, AStoppedDiagnosisContinuesToTheSameResult) {
       folder.Path(),
       {{"  - {type: mass_damping, alpha: 1 1/s}\n", ""}, {", {name: mass_damping.alpha}", ""}});
   const TetMesh mesh = BarMesh({7, 1, 1}, 2);
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const Calibration fit = FitFromStart(CalibrationProblem(study, mesh), &progress);
   ASSERT_TRUE(fit.usable) << fit.message;
   const std::filesystem::path file = folder / "refits.json";

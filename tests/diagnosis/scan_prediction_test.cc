@@ -32,9 +32,7 @@ const std::vector<TriMesh>& HeldSurfaces() {
 }
 
 Calibration FitOf(const CalibrationProblem& problem) {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   return FitFromStart(problem, &progress);
 }
 
@@ -59,9 +57,7 @@ TEST(ScanPrediction, ARefitTakesAwayWhatANuisanceExplains) {
   ASSERT_TRUE(misfit.usable) << misfit.message;
   EXPECT_GT(RootMeanSquare(WhitenedRows(misfit.residual, misfit, 0, true)), 5);
   const AdoptedNuisances all_of_it{misfit.residual, {{0, 1, false}}, 0};
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const EffectRefit refit = Refit({problem, start, misfit, &progress}, nullptr, all_of_it, false);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   EXPECT_LT(refit.calibration.rms, 1);
@@ -264,9 +260,7 @@ TEST_F(CarriedBar, IsFittedFromItsScansAlone) {
        {"order: 2", "order: 1"},
        {"motion: {time_step: 1.5 ms}", "motion: {time_step: 5 ms}"}});
   const PredictionStudy study = ReadPredictionStudy(Config::Load(folder_ / "study.yaml"));
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const CalibrationRecord record = RunCalibration(study, &progress);
   ASSERT_TRUE(record.usable) << record.message;
   // A shape reconstructed from noisy points, its edges rounded off, with coarse triangles: its

@@ -157,7 +157,8 @@ TEST_F(RecordingScatterTest, OfThreeMarkersNoneIsCalledAnOutlier) {
   EXPECT_TRUE(std::isnan(Measure(recording).outlier_share));
   const ExaminedRecording examined = ExamineRecording(recording);
   EXPECT_THAT(examined.findings, IsEmpty());
-  EXPECT_THAT(examined.scatter, AllOf(HasSubstr("the points scatter"), Not(HasSubstr("leave their track"))));
+  EXPECT_THAT(examined.scatter,
+              AllOf(HasSubstr("the points scatter"), Not(HasSubstr("leave their track"))));
 }
 
 // In frames without any marker the body moves on.
@@ -209,7 +210,7 @@ TEST_F(RecordingScatterTest, OfTrackedPointsIsThatOverTime) {
       "mm",
       "frames: {kind: points, pattern: points_%d.csv, count: 30, rate: 1 Hz, tracked: true}\n"));
   EXPECT_FALSE(scatter.is_of_surface);
-  EXPECT_TRUE(scatter.is_at_rest);
+  EXPECT_FALSE(scatter.is_upper_bound);
   EXPECT_NEAR(scatter.typical, 2e-5, 2e-6);  // 5400 values determine it to 1 %
 }
 

@@ -32,9 +32,7 @@ Scene ReadEdited(const std::string& name, const Edits& edits) {
 }
 
 SceneMotion Simulate(const Scene& scene) {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   return SimulateScene(scene, &progress);
 }
 

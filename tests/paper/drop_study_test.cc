@@ -91,9 +91,7 @@ TEST(DropStudyTest, MeshesComeCloseToThoseOfThePaper) {
   for (const DropMesh& mesh : study.meshes) {
     Scene scene = SceneOf(study, mesh, 1);
     scene.frames = 1;
-    ProgressOptions silent;
-    silent.style = ProgressStyle::kSilent;
-    Progress progress(silent);
+    Progress progress({.style = ProgressStyle::kSilent});
     const SceneMotion motion = SimulateScene(scene, &progress);
     ASSERT_TRUE(motion.IsUsable()) << motion.message;
     // Sizes are what can be chosen; counts come in jumps.
@@ -110,9 +108,7 @@ TEST(DropStudyTest, ACoarseBodyBouncesAndItsEnergyDoesNotGrow) {
   study.meshes = {coarse};
   study.scene.frame_rate /= 2;  // coarser in time, too
   study.scene.frames /= 2;
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const std::vector<DropRun> runs = RunDrop(study, &progress);
   ASSERT_EQ(runs.size(), 1u);
   const DropNumbers& numbers = runs[0].numbers;

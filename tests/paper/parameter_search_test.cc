@@ -39,9 +39,7 @@ class ParameterSearchTest : public testing::Test {
   }
   static ParameterSearchResult Search(const ParameterSearchSettings& settings,
                                       const fs::path& folder) {
-    ProgressOptions silent;
-    silent.style = ProgressStyle::kSilent;
-    Progress progress(silent);
+    Progress progress({.style = ProgressStyle::kSilent});
     return RunParameterSearch(Problem(), settings, folder, "reduced", &progress);
   }
 

@@ -8,9 +8,7 @@
 namespace lacuna {
 
 Table1Scans LoadReducedBend() {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const std::filesystem::path bend =
       std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend";
   Table1Scans scans{

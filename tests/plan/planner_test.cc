@@ -51,9 +51,7 @@ TEST(MakePlan, SaysThatNothingIsLeftToBeDecided) {
   fitted.mesh = bar.mesh;
   DiagnosisRecord diagnosis;
   diagnosis.decision.probabilities = {Probable(Kind::kEffect, {"drag"}, 1)};
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   try {
     MakePlan({fitted, diagnosis, {}}, {}, &progress);
     ADD_FAILURE() << "a plan without rivals";

@@ -32,9 +32,7 @@ std::filesystem::path WriteReducedBend(const TemporaryFolder& folder) {
 }
 
 RunRecord RunExperiment(const std::filesystem::path& experiment) {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   return RunReconstruction(ReadReconstruction(Config::Load(experiment)), &progress);
 }
 

@@ -56,9 +56,7 @@ forces: )" +
 
 TEST(KnownForces, PredictTheMotionThatTheyCaused) {
   const TemporaryFolder folder;
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   WriteLoadedBar(folder / "scan", &progress);
   const ReconstructionStudy study =
       ReadReconstruction(Config::Parse(Experiment(folder, "{model: known}"), "known.yaml"));

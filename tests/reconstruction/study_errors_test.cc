@@ -88,9 +88,7 @@ TEST(StudyErrors, TheNodesWhereForcesActAreAnInputOfTheRun) {
       << "\nforces: {region: {nodes_file: " << (folder / "pushed_nodes.txt").string() << "}}\n";
   const ReconstructionStudy study = ReadReconstruction(Config::Load(folder / "e.yaml"));
   std::ofstream(folder / "pushed_nodes.txt", std::ios::app) << "\n";
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   EXPECT_THAT([&] { RunReconstruction(study, &progress); },
               testing::ThrowsMessage<InputError>(
                   testing::AllOf(HasSubstr("pushed_nodes.txt"), HasSubstr("has changed"))));

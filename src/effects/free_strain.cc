@@ -1,0 +1,83 @@
+#include "effects/free_strain.h"
+
+#include <glog/logging.h>
+
+namespace lacuna {
+
+const Effect& FreeStrain::Law(const Kinematics& at) {
+  CHECK(at.elasticity != nullptr) << "a free strain is relative to an elasticity law";
+  return *at.elasticity;
+}
+
+Kinematics FreeStrain::AsSeenByLaw(const Kinematics& at, const Body& body,
+                                   const Eigen::VectorXd& position) {
+  static const Eigen::VectorXd no_memory;
+  return {body,    position,     at.velocity, at.acceleration,
+          at.time, at.time_step, no_memory,   at.elasticity};
+}
+
+void FreeStrain::AddDifference(const Kinematics& at, const AddOfLaw& add,
+                               Eigen::VectorXd* result) const {
+  if (IsNone()) return;
+  Eigen::VectorXd of_law = Eigen::VectorXd::Zero(result->size());
+  WithElasticPart(at, [&](const ElasticPart& elastic) {
+    add(elastic.state, &of_law);
+    *result += elastic.of_force * of_law;
+  });
+  of_law.setZero();
+  add(AsSeenByLaw(at, at.body, at.position), &of_law);
+  *result -= of_law;
+}
+
+void FreeStrain::AddForce(const Kinematics& at, Eigen::VectorXd* force) const {
+  AddDifference(
+      at,
+      [&](const Kinematics& state, Eigen::VectorXd* of_law) { Law(at).AddForce(state, of_law); },
+      force);
+}
+
+void FreeStrain::AddElasticityDerivative(const Kinematics& at, int parameter,
+                                         Eigen::VectorXd* derivative) const {
+  AddDifference(
+      at,
+      [&](const Kinematics& state, Eigen::VectorXd* of_law) {
+        Law(at).AddParameterDerivative(state, parameter, of_law);
+      },
+      derivative);
+}
+
+void FreeStrain::AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                             BlockMatrix* tangent) const {
+  if (IsNone() || weights.position == 0 || convexify) return;
+  WithElasticPart(at, [&](const ElasticPart& elastic) {
+    Law(at).AddTangents(elastic.state, {.position = weights.position * elastic.of_tangent}, false,
+                        tangent);
+  });
+  Law(at).AddTangents(AsSeenByLaw(at, at.body, at.position), {.position = -weights.position}, false,
+                      tangent);
+}
+
+std::optional<double> FreeStrain::Energy(const Kinematics& at) const {
+  if (IsNone()) return 0.0;
+  std::optional<double> stored;
+  WithElasticPart(at, [&](const ElasticPart& elastic) {
+    stored = Law(at).Energy(elastic.state);
+    if (stored) *stored *= elastic.of_energy;
+  });
+  const std::optional<double> unstrained = Law(at).Energy(AsSeenByLaw(at, at.body, at.position));
+  if (!stored || !unstrained) return std::nullopt;
+  return *stored - *unstrained;
+}
+
+void FreeStrain::AddForceAndStiffness(const Kinematics& at, const Kinematics& state, double factor,
+                                      Eigen::VectorXd* result) {
+  Eigen::VectorXd of_law = Eigen::VectorXd::Zero(result->size());
+  Law(at).AddForce(state, &of_law);
+  *result += factor * of_law;
+  BlockMatrix stiffness(at.body.pattern);
+  Law(at).AddTangents(state, {.position = 1}, false, &stiffness);
+  stiffness.Multiply(at.position, &of_law);
+  *result -= of_law;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,61 @@
+// What effects have in common whose strain is free of the moduli, such as that of a swelling or
+// heated material: they change the state that the elasticity law of the body sees, and add the
+// difference between what the law adds there and what it adds in the actual state,
+//   E = e E_el(elastic part) − E_el(x),   f = s f_el(elastic part) − f_el(x),
+//   ∂f/∂x = k K_el(elastic part) − K_el(x),
+// with the energy E_el, the force f_el and the derivative K_el = ∂f_el/∂x of the law.
+#ifndef LACUNA_EFFECTS_FREE_STRAIN_H_
+#define LACUNA_EFFECTS_FREE_STRAIN_H_
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+
+#include "fem/effect.h"
+
+namespace lacuna {
+
+// A base class for such effects: theirs are card, parameters, stress, the derivative with respect
+// to the strain, and the following two.
+class FreeStrain : public Effect {
+ public:
+  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const final;
+  // With `convexify` nothing: the law's own approximation stands for both.
+  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                   BlockMatrix* tangent) const final;
+  void AddElasticityDerivative(const Kinematics& at, int parameter,
+                               Eigen::VectorXd* derivative) const final;
+  std::optional<double> Energy(const Kinematics& at) const final;
+
+ protected:
+  struct ElasticPart {
+    const Kinematics& state;  // as the law sees it
+    double of_force = 1;      // s, also of the derivatives with respect to the law's parameters
+    double of_tangent = 1;    // k
+    double of_energy = 1;     // e
+  };
+
+  // Whether the effect adds nothing, because its strain is zero everywhere.
+  virtual bool IsNone() const = 0;
+  // Calls `use` once with the elastic part of the state, which lives as long as the call.
+  virtual void WithElasticPart(const Kinematics& at,
+                               const std::function<void(const ElasticPart&)>& use) const = 0;
+
+  // CHECKs that there is a law.
+  static const Effect& Law(const Kinematics& at);
+  // The state with another body of the same mesh and other positions (3n, m), which must outlive
+  // it. Elasticity laws have no memory and do not depend on velocities.
+  static Kinematics AsSeenByLaw(const Kinematics& at, const Body& body,
+                                const Eigen::VectorXd& position);
+  // Adds factor · f_el − K_el x, both in `state`, where x are the positions of `at`.
+  static void AddForceAndStiffness(const Kinematics& at, const Kinematics& state, double factor,
+                                   Eigen::VectorXd* result);
+
+ private:
+  using AddOfLaw = std::function<void(const Kinematics& state, Eigen::VectorXd* of_law)>;
+  void AddDifference(const Kinematics& at, const AddOfLaw& add, Eigen::VectorXd* result) const;
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_EFFECTS_FREE_STRAIN_H_
