@@ -18,13 +18,6 @@ size_t CountOf(const std::vector<HypothesisProbability>& hypotheses, Kind kind) 
                                            [&](const auto& one) { return one.kind == kind; }));
 }
 
-const WeighedPair* FindPair(const DecisionInput& input, const std::string& a,
-                            const std::string& b) {
-  for (const WeighedPair& pair : input.pairs)
-    if (pair.IsOf(a, b)) return &pair;
-  return nullptr;
-}
-
 const WeighedRefit* FindRefit(const DecisionInput& input, const std::string& effect) {
   for (const WeighedRefit& refit : input.refits)
     if (refit.effect == effect) return &refit;
@@ -209,12 +202,11 @@ struct Pair {
   TestedSpace tested;
 };
 
-// Each effect that was refitted, and the most probable one, together with the best further effect
-// beside it. The second effect is weighed to first order, which lets it replace the first one in
-// part, even where the two are one too many: where both were refitted, the smaller of the two
-// estimates counts, and the refit of both where there is one.
-std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvidence>& first_order,
-                          const std::vector<HypothesisProbability>& posterior) {
+// The effects of the posterior that may be the first of a pair: those that were refitted, and the
+// most probable one.
+std::vector<EffectWithFurther> FirstEffects(const DecisionInput& input,
+                                            const std::vector<NamedEvidence>& first_order,
+                                            const std::vector<HypothesisProbability>& posterior) {
   std::vector<EffectWithFurther> effects;
   for (const HypothesisProbability& first : posterior) {
     if (first.kind != Kind::kEffect || first.is_refuted) continue;
@@ -227,11 +219,41 @@ std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvi
     effects.push_back(
         {first.names.front(), first.evidence, tested, SumVariants(*tested.space, factors)});
   }
+  return effects;
+}
+
+Pair MakePair(const DecisionInput& input, const std::string& first, const std::string& second,
+              double evidence, TestedSpace tested) {
+  Pair pair;
+  pair.hypothesis.kind = Kind::kPair;
+  pair.hypothesis.names = {first, second};
+  pair.hypothesis.names.insert(pair.hypothesis.names.end(), input.adopted.begin(),
+                               input.adopted.end());
+  pair.hypothesis.evidence = evidence;
+  pair.tested = std::move(tested);
+  return pair;
+}
+
+// Every pair that was refitted, and each first effect together with the best further effect beside
+// it. The second effect of the latter is weighed to first order, which lets it replace the first
+// one in part, even where the two are one too many: where both were refitted, the smaller of the
+// two estimates counts.
+std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvidence>& first_order,
+                          const std::vector<HypothesisProbability>& posterior) {
+  const std::vector<EffectWithFurther> effects = FirstEffects(input, first_order, posterior);
   const auto is_refuted = [&](const std::string& effect) {
     const WeighedRefit* refit = FindRefit(input, effect);
     return refit != nullptr && !refit->predicts;
   };
   std::vector<Pair> pairs;
+  for (const WeighedPair& refit : input.pairs)
+    for (const EffectWithFurther& first : effects) {
+      if (first.effect != refit.first) continue;
+      const double second = refit.gain - std::log(static_cast<double>(input.families.size()));
+      pairs.push_back(
+          MakePair(input, refit.first, refit.second, first.With(second), {&refit.space, {}}));
+      pairs.back().hypothesis.is_refuted = !refit.predicts;
+    }
   for (const EffectWithFurther& first : effects) {
     const std::string& name = first.effect;
     const NamedEvidence* second = nullptr;
@@ -241,33 +263,20 @@ std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvi
         second = &named;
     // The error of the first effect's model may give so much evidence to any other effect.
     if (second == nullptr || second->evidence < kToleratedModelError * first.evidence) continue;
-    Pair pair;
-    pair.hypothesis.kind = Kind::kPair;
-    pair.hypothesis.names = {name, second->name};
-    pair.hypothesis.names.insert(pair.hypothesis.names.end(), input.adopted.begin(),
-                                 input.adopted.end());
-    pair.hypothesis.evidence = first.With(second->evidence);
-    pair.tested = first.tested;
-    const std::vector<int>& columns = first.tested.space->hypotheses[second->best].columns;
-    pair.tested.columns.insert(pair.tested.columns.end(), columns.begin(), columns.end());
+    if (std::any_of(pairs.begin(), pairs.end(), [&](const Pair& other) {
+          return other.hypothesis.Contains(name) && other.hypothesis.Contains(second->name);
+        }))
+      continue;
+    double evidence = first.With(second->evidence);
     for (const EffectWithFurther& other : effects) {
       if (other.effect != second->name) continue;
       for (const NamedEvidence& named : other.further)
-        if (named.name == name)
-          pair.hypothesis.evidence = std::min(pair.hypothesis.evidence, other.With(named.evidence));
+        if (named.name == name) evidence = std::min(evidence, other.With(named.evidence));
     }
-    if (const WeighedPair* refit = FindPair(input, name, second->name)) {
-      for (const EffectWithFurther& other : effects)
-        if (other.effect == refit->first)
-          pair.hypothesis.evidence =
-              other.With(refit->gain - std::log(static_cast<double>(input.families.size())));
-      pair.hypothesis.is_refuted = !refit->predicts;
-      pair.tested = {&refit->space, {}};
-    }
-    const bool is_known = std::any_of(pairs.begin(), pairs.end(), [&](const Pair& other) {
-      return other.hypothesis.names[0] == second->name && other.hypothesis.names[1] == name;
-    });
-    if (!is_known) pairs.push_back(pair);
+    TestedSpace tested = first.tested;
+    const std::vector<int>& columns = first.tested.space->hypotheses[second->best].columns;
+    tested.columns.insert(tested.columns.end(), columns.begin(), columns.end());
+    pairs.push_back(MakePair(input, name, second->name, evidence, std::move(tested)));
   }
   return pairs;
 }

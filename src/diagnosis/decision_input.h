@@ -24,7 +24,7 @@ struct WeighedRefit {
 // The model fitted again with two effects at once.
 struct WeighedPair {
   std::string first, second;
-  double gain = 0;        // log Bayes factor against the refit with the first alone
+  double gain = 0;        // log Bayes factor against the refit with the first alone (WeighedRefit)
   HypothesisSpace space;  // along the refit; the parameters of both are in its base
   bool predicts = true;   // beyond the first alone
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "calibration/calibration_fits.h"
@@ -24,6 +25,9 @@ namespace {
 // DecideAlongBest() computes columns anew or fits a pair so many times at most. Higher: slower,
 // where several hypotheses are nearly equal.
 constexpr int kMostLooks = 4;
+// So many pairs are fitted, at most, that could be taken for the most probable one. Higher: slower,
+// where many members of a family explain the same residual.
+constexpr int kMostRivalPairs = 3;
 // A halving of the time step divides the evidence of the unknown part of its error by about this
 // number: an error of second order becomes a quarter, and evidence grows with its square.
 constexpr double kEvidencePerHalving = 16;
@@ -122,10 +126,16 @@ Decision RefitWhatIsStated(const RefitContext& context, RefittedRanking* ranked,
   }
 }
 
-bool IsRefitted(const std::vector<WeighedPair>& pairs, const HypothesisProbability& pair) {
-  return std::any_of(pairs.begin(), pairs.end(), [&](const WeighedPair& one) {
-    return one.IsOf(pair.names[0], pair.names[1]);
-  });
+bool IsRefitted(const std::vector<WeighedPair>& pairs, const std::string& a, const std::string& b) {
+  return std::any_of(pairs.begin(), pairs.end(),
+                     [&](const WeighedPair& one) { return one.IsOf(a, b); });
+}
+
+// The index of the effect of this type, if it has a usable refit.
+std::optional<size_t> FindUsableRefit(const RefittedRanking& ranked, const std::string& type) {
+  for (size_t k = 0; k < ranked.effects.size(); ++k)
+    if (ranked.effects[k].scored.candidate.type == type && ranked.IsUsable(k)) return k;
+  return std::nullopt;
 }
 
 // The refit with this effect, as a model along whose motion everything is ranked anew; null: there
@@ -133,12 +143,22 @@ bool IsRefitted(const std::vector<WeighedPair>& pairs, const HypothesisProbabili
 std::unique_ptr<RefittedModel> ModelWith(const std::string& effect, const RefitContext& context,
                                          const RefittedRanking& ranked, const NoiseLevel& noise,
                                          const DiagnosisOptions& options) {
-  for (size_t k = 0; k < ranked.effects.size(); ++k)
-    if (ranked.effects[k].scored.candidate.type == effect && ranked.IsUsable(k))
-      return std::make_unique<RefittedModel>(context.model, ranked.effects[k].scored,
-                                             ranked.refits[k], options.without,
-                                             DecidedBase{context.ranking, noise});
-  return nullptr;
+  const std::optional<size_t> k = FindUsableRefit(ranked, effect);
+  if (!k) return nullptr;
+  return std::make_unique<RefittedModel>(context.model, ranked.effects[*k].scored,
+                                         ranked.refits[*k], options.without,
+                                         DecidedBase{context.ranking, noise});
+}
+
+// Fits the model with a further effect. Returns whether that succeeded.
+bool FitPair(const RefittedModel& model, const std::string& further, const NoiseLevel& noise,
+             RefittedRanking* ranked) {
+  const std::optional<size_t> first = FindUsableRefit(*ranked, model.effect());
+  if (!first) return false;
+  const double alone = EvidenceOf(ranked->refits[*first], noise).all;
+  std::optional<WeighedPair> pair = model.RefitWith(further, alone, noise);
+  if (pair) ranked->pairs.push_back(*std::move(pair));
+  return pair.has_value();
 }
 
 // Where an effect is most probable, decides anew with the columns of its own motion and, where that
@@ -157,11 +177,10 @@ Decision DecideAlongBest(const RefitContext& context, const DiagnosisOptions& op
       if (model == nullptr) break;
       LookAlong(context, model->effect(), model->ranking(), ranked);
       *noise = WeighRefits(context, ranked);
-    } else if (best.kind == Kind::kPair && !IsRefitted(ranked->pairs, best)) {
+    } else if (best.kind == Kind::kPair &&
+               !IsRefitted(ranked->pairs, best.names[0], best.names[1])) {
       const std::string& further = best.names[0] == model->effect() ? best.names[1] : best.names[0];
-      std::optional<WeighedPair> pair = model->RefitWith(further, noise->level);
-      if (!pair) break;
-      ranked->pairs.push_back(*std::move(pair));
+      if (!FitPair(*model, further, noise->level, ranked)) break;
     } else {
       break;
     }
@@ -170,12 +189,68 @@ Decision DecideAlongBest(const RefitContext& context, const DiagnosisOptions& op
   return decision;
 }
 
-// Looks closer where that may change the decision: along the motion of the best effect and, where
-// nuisances explain the residual, at effects in their place.
+// A pair that could be taken for another one: `other` in place of the effect that is not `kept`.
+struct RivalPair {
+  std::string kept, other;
+  double evidence = 0;  // of `other` alone
+};
+
+// The pairs in which another member of its family stands in place of one effect of `pair`, the most
+// probable members first. Members that have not been refitted, or that are refuted, do not count.
+std::vector<RivalPair> RivalsOf(const HypothesisProbability& pair, const RefittedRanking& ranked,
+                                const std::map<std::string, EffectFamily>& families) {
+  std::vector<RivalPair> rivals;
+  for (const bool first : {true, false}) {
+    const std::string &replaced = pair.names[first ? 0 : 1], &kept = pair.names[first ? 1 : 0];
+    const EffectFamily family = FamilyOf(families, replaced);
+    if (family == EffectFamily::kOther) continue;
+    for (size_t k = 0; k < ranked.effects.size(); ++k) {
+      const RankedEffect& effect = ranked.effects[k];
+      const std::string& type = effect.scored.candidate.type;
+      if (ranked.IsUsable(k) && effect.predicts && !pair.Contains(type) &&
+          FamilyOf(families, type) == family)
+        rivals.push_back({kept, type, effect.evidence});
+    }
+  }
+  std::stable_sort(rivals.begin(), rivals.end(),
+                   [](const RivalPair& a, const RivalPair& b) { return a.evidence > b.evidence; });
+  return rivals;
+}
+
+// A pair that was fitted has the advantage of the fit over those that first order weighs. If one is
+// most probable, fits its rivals, too.
+Decision FitRivalPairs(const RefitContext& context, const DiagnosisOptions& options,
+                       Decision decision, RefittedRanking* ranked, RefitNoise* noise,
+                       Diagnosis* diagnosis) {
+  std::set<std::set<std::string>> tried;
+  while (tried.size() < kMostRivalPairs) {
+    const HypothesisProbability best = decision.record.probabilities.front();
+    if (best.kind != HypothesisProbability::Kind::kPair ||
+        !IsRefitted(ranked->pairs, best.names[0], best.names[1]))
+      break;
+    const std::vector<RivalPair> rivals =
+        RivalsOf(best, *ranked, diagnosis->decision_input.families);
+    const auto next = std::find_if(rivals.begin(), rivals.end(), [&](const RivalPair& rival) {
+      return !IsRefitted(ranked->pairs, rival.kept, rival.other) &&
+             tried.count({rival.kept, rival.other}) == 0;
+    });
+    if (next == rivals.end()) break;
+    tried.insert({next->kept, next->other});
+    const auto model = ModelWith(next->other, context, *ranked, noise->level, options);
+    if (FitPair(*model, next->kept, noise->level, ranked))
+      decision = RefitWhatIsStated(context, ranked, noise, diagnosis);
+  }
+  return decision;
+}
+
+// Looks closer where that may change the decision: along the motion of the best effect, at pairs
+// that could be taken for the best one and, where nuisances explain the residual, at effects in
+// their place.
 void DecideUpon(const RefitContext& context, const DiagnosisOptions& options,
                 RefittedRanking* ranked, RefitNoise* noise, Diagnosis* diagnosis) {
   Decision decision = RefitWhatIsStated(context, ranked, noise, diagnosis);
   decision = DecideAlongBest(context, options, std::move(decision), ranked, noise, diagnosis);
+  decision = FitRivalPairs(context, options, std::move(decision), ranked, noise, diagnosis);
   DecisionInput& input = diagnosis->decision_input;
   if (decision.verdict == Verdict::kNuisance && context.ranking.adopted.HasMore()) {
     diagnosis->alternatives = RefitInPlaceOfNuisances(context, *ranked, *noise, options.refits);

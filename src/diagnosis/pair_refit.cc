@@ -72,7 +72,7 @@ RefittedModel::RefittedModel(const BaselineModel& baseline, const ScoredVariant&
       &decided);
 }
 
-std::optional<WeighedPair> RefittedModel::RefitWith(const std::string& further,
+std::optional<WeighedPair> RefittedModel::RefitWith(const std::string& further, double first,
                                                     const NoiseLevel& noise) const {
   for (const ScoredEffect& scored : ranking_.effects) {
     if (scored.candidate.type != further) continue;
@@ -84,7 +84,7 @@ std::optional<WeighedPair> RefittedModel::RefitWith(const std::string& further,
     const EffectRefit both = RefitEffect({model, ranking_}, ranking_.adopted, alone,
                                          /*is_found=*/true, &effect);
     if (!alone.message.empty() || !both.message.empty()) return std::nullopt;
-    return WeighedPair{effect_, further, EvidenceOf(both, noise).all - EvidenceOf(alone, noise).all,
+    return WeighedPair{effect_, further, EvidenceOf(both, noise).all - first,
                        SpaceOf(both.hypothesis, ranking_, further, noise),
                        Predicts(both, alone, noise)};
   }

@@ -31,9 +31,11 @@ class RefittedModel {
   const std::string& effect() const { return effect_; }
   const EffectRanking& ranking() const { return ranking_; }
 
-  // The fit with a further effect, weighed with this noise; nothing if that was not tried or cannot
-  // be fitted. Throws Interrupted.
-  std::optional<WeighedPair> RefitWith(const std::string& further, const NoiseLevel& noise) const;
+  // The fit with a further effect, weighed with this noise against `first`, the log evidence of the
+  // refit with the effect alone; nothing if that was not tried or cannot be fitted. Throws
+  // Interrupted.
+  std::optional<WeighedPair> RefitWith(const std::string& further, double first,
+                                       const NoiseLevel& noise) const;
 
  private:
   const BaselineModel& baseline_;

@@ -201,6 +201,24 @@ TEST(Decide, BelievesTheRefitOfAPairMoreThanFirstOrder) {
   EXPECT_THAT(Decide(input).names, ElementsAre("gravity"));
 }
 
+// Beside the first effect, first order prefers one second effect, and the fits another one.
+TEST(Decide, WeighsEveryPairThatWasFitted) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(13);
+  const Eigen::VectorXd gravity = synthetic.Of("gravity") * Eigen::Vector3d(12, -9, 8);
+  const Eigen::VectorXd drag = 10 * synthetic.Of("drag");
+  DecisionInput input = InputOf(synthetic, noise - gravity - drag);
+  input.refits.push_back({"gravity", 100, synthetic.With(noise - drag)});
+  input.pairs.push_back({"gravity", "drag", 45, synthetic.With(noise)});
+  EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "drag"));
+  input.pairs.push_back({"gravity", "mass_damping", 60, synthetic.With(noise)});
+  EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "mass_damping"));
+  // A pair whose first effect is refuted is no hypothesis.
+  input.refits.front().predicts = false;
+  for (const HypothesisProbability& one : Decide(input).record.probabilities)
+    EXPECT_FALSE(one.Contains("gravity") && one.kind == Kind::kPair);
+}
+
 // An effect that does not lower the error of the held-out frames is not named, alone or in a pair.
 TEST(Decide, DoesNotNameARefutedEffect) {
   const SyntheticSpace synthetic;
