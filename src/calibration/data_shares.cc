@@ -1,28 +1,9 @@
 #include "calibration/data_shares.h"
 
+#include "calibration/data_kinds.h"
 #include "calibration/linear_misfit.h"
 
 namespace lacuna {
-namespace {
-
-using ShareOfKind = double DataShares::*;
-
-ShareOfKind ShareOfPoints(const RecordingModel& model) {
-  return model.Markers() != nullptr ? &DataShares::markers : &DataShares::scans;
-}
-
-// Whether the fitted recordings have several kinds of data.
-bool HasSeveralKinds(const CalibrationProblem& problem) {
-  bool markers = false, scans = false, forces = false;
-  for (const RecordingModel& model : problem.models()) {
-    if (!model.item().fitted) continue;
-    (model.Markers() != nullptr ? markers : scans) = true;
-    forces = forces || !model.Reactions().empty();
-  }
-  return static_cast<int>(markers) + static_cast<int>(scans) + static_cast<int>(forces) > 1;
-}
-
-}  // namespace
 
 std::vector<std::optional<DataShares>> SharesOfData(const CalibrationProblem& problem,
                                                     const Eigen::VectorXd& values) {
@@ -33,16 +14,11 @@ std::vector<std::optional<DataShares>> SharesOfData(const CalibrationProblem& pr
   const Eigen::MatrixXd squares =
       WhitenedRows(misfit.jacobian, misfit, 0, /*fitted_only=*/true).cwiseAbs2();
   const Eigen::RowVectorXd all = squares.colwise().sum();
+  const std::vector<DataKind> kinds = KindsOfParts(misfit, problem);
   std::vector<std::optional<DataShares>> shares(static_cast<size_t>(all.size()));
-  for (Eigen::Index k = 0; k < all.size(); ++k) {
-    if (!(all[k] > 0)) continue;
-    DataShares& own = shares[static_cast<size_t>(k)].emplace();
-    for (const LinearisedMisfit::Part& part : misfit.parts) {
-      const ShareOfKind share =
-          part.IsOfPoints() ? ShareOfPoints(problem.models()[part.recording]) : &DataShares::forces;
-      own.*share += squares.col(k).segment(part.first_row, part.layout.Rows()).sum() / all[k];
-    }
-  }
+  for (Eigen::Index k = 0; k < all.size(); ++k)
+    if (all[k] > 0)
+      shares[static_cast<size_t>(k)] = SumsByKind(squares.col(k) / all[k], misfit, kinds);
   return shares;
 }
 

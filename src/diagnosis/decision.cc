@@ -234,10 +234,10 @@ Pair MakePair(const DecisionInput& input, const std::string& first, const std::s
   return pair;
 }
 
-// Every pair that was refitted, and each first effect together with the best further effect beside
-// it. The second effect of the latter is weighed to first order, which lets it replace the first
-// one in part, even where the two are one too many: where both were refitted, the smaller of the
-// two estimates counts.
+// The pairs that the decision weighs: those that were fitted and whose first effect is not refuted,
+// and each first effect with the best further effect beside it. The further effect is weighed to
+// first order, so that it may replace a part of the first one although only one of them is missing.
+// Where both were refitted, the smaller of the two estimates therefore counts.
 std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvidence>& first_order,
                           const std::vector<HypothesisProbability>& posterior) {
   const std::vector<EffectWithFurther> effects = FirstEffects(input, first_order, posterior);
@@ -252,7 +252,7 @@ std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvi
       const double second = refit.gain - std::log(static_cast<double>(input.families.size()));
       pairs.push_back(
           MakePair(input, refit.first, refit.second, first.With(second), {&refit.space, {}}));
-      pairs.back().hypothesis.is_refuted = !refit.predicts;
+      pairs.back().hypothesis.is_refuted = !refit.predicts || is_refuted(refit.second);
     }
   for (const EffectWithFurther& first : effects) {
     const std::string& name = first.effect;

@@ -24,7 +24,9 @@ struct WeighedRefit {
 // The model fitted again with two effects at once.
 struct WeighedPair {
   std::string first, second;
-  double gain = 0;        // log Bayes factor against the refit with the first alone (WeighedRefit)
+  // Log evidence minus that of the refit with the first effect alone (WeighedRefit), beside the
+  // same nuisances. Contains DecisionInput::natural_value of the second effect.
+  double gain = 0;
   HypothesisSpace space;  // along the refit; the parameters of both are in its base
   bool predicts = true;   // beyond the first alone
 

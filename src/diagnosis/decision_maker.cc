@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "effects/catalogue.h"
@@ -40,6 +41,33 @@ double EvidenceOfNaturalValue(const RankedEffect& effect) {
   return NaturalValueEvidence(mean, deviation, prior, card.natural_magnitude);
 }
 
+// The space along the refit of an effect, or of two.
+HypothesisSpace SpaceAlong(const FittedHypothesis& hypothesis, const RefittedRanking& ranked,
+                           const EffectRanking& ranking, std::vector<std::string> types,
+                           const NoiseLevel& noise) {
+  if (!ranked.along) return SpaceOf(hypothesis, ranking, types, noise);
+  const auto along = std::find(types.begin(), types.end(), ranked.along_type);
+  if (along == types.end()) return SpaceOf(hypothesis, *ranked.along_for_others, types, noise);
+  // The ranking along its motion may have this effect a second time.
+  types.erase(along);
+  return SpaceOf(hypothesis, *ranked.along, types, noise);
+}
+
+// Nothing if the first effect has no usable refit, or if the evidence is not a finite number.
+std::optional<WeighedPair> Weigh(const FittedPair& pair, const RefittedRanking& ranked,
+                                 const EffectRanking& ranking, const NoiseLevel& noise) {
+  const std::optional<size_t> first = ranked.FindUsable(pair.first);
+  if (!first) return std::nullopt;
+  const double gain = EvidenceOf(pair.both, noise).all -
+                      EvidenceOf(ranked.refits[*first], noise).all +
+                      EvidenceOfNaturalValue(pair.second);
+  if (!std::isfinite(gain)) return std::nullopt;
+  const std::string& second = pair.second.scored.candidate.type;
+  return WeighedPair{pair.first, second, gain,
+                     SpaceAlong(pair.both.hypothesis, ranked, ranking, {pair.first, second}, noise),
+                     Predicts(pair.both, pair.alone, noise)};
+}
+
 }  // namespace
 
 double NaturalValueEvidence(const Eigen::Vector3d& mean, const Eigen::Vector3d& deviation,
@@ -63,7 +91,7 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
                                 const RefitNoise& noise, const Diagnosis& diagnosis) {
   const EffectRanking& ranking = context.ranking;
   DecisionInput input;
-  input.baseline = SpaceOf(ranked.baseline.hypothesis, ranking, "", noise.level);
+  input.baseline = SpaceOf(ranked.baseline.hypothesis, ranking, {}, noise.level);
   const double penalty = SelectionPenalty(ranked.effects.size());
   for (size_t k = 0; k < ranked.effects.size(); ++k) {
     const RankedEffect& effect = ranked.effects[k];
@@ -71,20 +99,16 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
     if (candidate.effect != nullptr)
       input.families[candidate.type] = candidate.effect->Card().family;
     if (!ranked.IsUsable(k)) continue;
-    const FittedHypothesis& hypothesis = ranked.refits[k].hypothesis;
-    HypothesisSpace space;
-    if (!ranked.along)
-      space = SpaceOf(hypothesis, ranking, candidate.type, noise.level);
-    else if (candidate.type == ranked.along_type)
-      space = SpaceOf(hypothesis, *ranked.along, "", noise.level);
-    else
-      space = SpaceOf(hypothesis, *ranked.along_for_others, candidate.type, noise.level);
     input.refits.push_back(
-        {candidate.type, effect.evidence + penalty, std::move(space), effect.predicts});
+        {candidate.type, effect.evidence + penalty,
+         SpaceAlong(ranked.refits[k].hypothesis, ranked, ranking, {candidate.type}, noise.level),
+         effect.predicts});
     if (const double natural = EvidenceOfNaturalValue(effect); natural != 0)
       input.natural_value[candidate.type] = natural;
   }
-  input.pairs = ranked.pairs;
+  for (const FittedPair& pair : ranked.pairs)
+    if (std::optional<WeighedPair> weighed = Weigh(pair, ranked, ranking, noise.level))
+      input.pairs.push_back(*std::move(weighed));
   for (const ScoredNuisance& nuisance : diagnosis.nuisances) {
     const std::string& name = nuisance.candidate.card.name;
     if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model &&

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "calibration/calibration_fits.h"
@@ -25,8 +23,8 @@ namespace {
 // DecideAlongBest() computes columns anew or fits a pair so many times at most. Higher: slower,
 // where several hypotheses are nearly equal.
 constexpr int kMostLooks = 4;
-// So many pairs are fitted, at most, that could be taken for the most probable one. Higher: slower,
-// where many members of a family explain the same residual.
+// The largest number of pairs that FitRivalPairs() fits. Higher: slower, where many members of a
+// family explain the same residual.
 constexpr int kMostRivalPairs = 3;
 // A halving of the time step divides the evidence of the unknown part of its error by about this
 // number: an error of second order becomes a quarter, and evidence grows with its square.
@@ -126,121 +124,138 @@ Decision RefitWhatIsStated(const RefitContext& context, RefittedRanking* ranked,
   }
 }
 
-bool IsRefitted(const std::vector<WeighedPair>& pairs, const std::string& a, const std::string& b) {
+bool IsFitted(const std::vector<FittedPair>& pairs, const std::string& a, const std::string& b) {
   return std::any_of(pairs.begin(), pairs.end(),
-                     [&](const WeighedPair& one) { return one.IsOf(a, b); });
+                     [&](const FittedPair& one) { return one.IsOf(a, b); });
 }
 
-// The index of the effect of this type, if it has a usable refit.
-std::optional<size_t> FindUsableRefit(const RefittedRanking& ranked, const std::string& type) {
-  for (size_t k = 0; k < ranked.effects.size(); ++k)
-    if (ranked.effects[k].scored.candidate.type == type && ranked.IsUsable(k)) return k;
-  return std::nullopt;
+// What the steps below look at, and change.
+struct OpenDecision {
+  const RefitContext& context;
+  const DiagnosisOptions& options;
+  RefittedRanking* ranked;
+  RefitNoise* noise;
+  Diagnosis* diagnosis;
+  Decision decision;
+
+  const HypothesisProbability& Best() const { return decision.record.probabilities.front(); }
+  void DecideAgain() { decision = RefitWhatIsStated(context, ranked, noise, diagnosis); }
+};
+
+// Ranks everything anew along the motion of the refit with this effect. Returns whether there is
+// such a refit.
+bool LookAlongRefit(const std::string& effect, OpenDecision* open) {
+  RefittedRanking& ranked = *open->ranked;
+  const std::optional<size_t> k = ranked.FindUsable(effect);
+  if (!k) return false;
+  LookAlong(
+      open->context, effect,
+      RankAlong(open->context.model, ranked.effects[*k].scored, ranked.refits[*k],
+                open->options.without, DecidedBase{open->context.ranking, open->noise->level}),
+      &ranked);
+  *open->noise = WeighRefits(open->context, &ranked);
+  return true;
 }
 
-// The refit with this effect, as a model along whose motion everything is ranked anew; null: there
-// is no such refit.
-std::unique_ptr<RefittedModel> ModelWith(const std::string& effect, const RefitContext& context,
-                                         const RefittedRanking& ranked, const NoiseLevel& noise,
-                                         const DiagnosisOptions& options) {
-  const std::optional<size_t> k = FindUsableRefit(ranked, effect);
-  if (!k) return nullptr;
-  return std::make_unique<RefittedModel>(context.model, ranked.effects[*k].scored,
-                                         ranked.refits[*k], options.without,
-                                         DecidedBase{context.ranking, noise});
-}
-
-// Fits the model with a further effect. Returns whether that succeeded.
-bool FitPair(const RefittedModel& model, const std::string& further, const NoiseLevel& noise,
-             RefittedRanking* ranked) {
-  const std::optional<size_t> first = FindUsableRefit(*ranked, model.effect());
-  if (!first) return false;
-  const double alone = EvidenceOf(ranked->refits[*first], noise).all;
-  std::optional<WeighedPair> pair = model.RefitWith(further, alone, noise);
-  if (pair) ranked->pairs.push_back(*std::move(pair));
+// Fits the model with a refitted effect and a further one. Returns whether that succeeded.
+bool AddPair(const std::string& first, const std::string& further, OpenDecision* open) {
+  RefittedRanking& ranked = *open->ranked;
+  const std::optional<size_t> k = ranked.FindUsable(first);
+  if (!k || !ranked.along) return false;
+  std::optional<FittedPair> pair =
+      FitPair(open->context.model, ranked.effects[*k].scored, ranked.refits[*k], further,
+              *ranked.along, first == ranked.along_type);
+  if (pair) ranked.pairs.push_back(*std::move(pair));
   return pair.has_value();
 }
 
 // Where an effect is most probable, decides anew with the columns of its own motion and, where that
 // is a pair, with the fit of both, until the most probable hypothesis has been looked at in this
-// way. Sets the noise and the input that belong to the decision.
-Decision DecideAlongBest(const RefitContext& context, const DiagnosisOptions& options,
-                         Decision decision, RefittedRanking* ranked, RefitNoise* noise,
-                         Diagnosis* diagnosis) {
+// way.
+void DecideAlongBest(OpenDecision* open) {
   using Kind = HypothesisProbability::Kind;
-  std::unique_ptr<RefittedModel> model;
+  const RefittedRanking& ranked = *open->ranked;
   for (int look = 0; look < kMostLooks; ++look) {
-    const HypothesisProbability best = decision.record.probabilities.front();
+    const HypothesisProbability best = open->Best();
     if (best.kind != Kind::kEffect && best.kind != Kind::kPair) break;
-    if (model == nullptr || !best.Contains(model->effect())) {
-      model = ModelWith(best.names.front(), context, *ranked, noise->level, options);
-      if (model == nullptr) break;
-      LookAlong(context, model->effect(), model->ranking(), ranked);
-      *noise = WeighRefits(context, ranked);
-    } else if (best.kind == Kind::kPair &&
-               !IsRefitted(ranked->pairs, best.names[0], best.names[1])) {
-      const std::string& further = best.names[0] == model->effect() ? best.names[1] : best.names[0];
-      if (!FitPair(*model, further, noise->level, ranked)) break;
+    if (!ranked.along || !best.Contains(ranked.along_type)) {
+      if (!LookAlongRefit(best.names.front(), open)) break;
+    } else if (best.kind == Kind::kPair && !IsFitted(ranked.pairs, best.names[0], best.names[1])) {
+      const bool is_first = best.names[0] == ranked.along_type;
+      if (!AddPair(ranked.along_type, best.names[is_first ? 1 : 0], open)) break;
     } else {
       break;
     }
-    decision = RefitWhatIsStated(context, ranked, noise, diagnosis);
+    open->DecideAgain();
   }
-  return decision;
 }
 
-// A pair that could be taken for another one: `other` in place of the effect that is not `kept`.
+// Two effects that may explain the same residual as a pair that was fitted.
 struct RivalPair {
-  std::string kept, other;
-  double evidence = 0;  // of `other` alone
+  std::string first, further;
+  double lost =
+      0;  // evidence that replacing one effect of that pair costs, to first order or alone
 };
 
-// The pairs in which another member of its family stands in place of one effect of `pair`, the most
-// probable members first. Members that have not been refitted, or that are refuted, do not count.
+// The pairs in which another effect of its family replaces one effect of `pair`, and which have not
+// been fitted, the most promising first. The first effect of each has a refit.
 std::vector<RivalPair> RivalsOf(const HypothesisProbability& pair, const RefittedRanking& ranked,
                                 const std::map<std::string, EffectFamily>& families) {
+  const auto first_order = [&](const std::string& type) {
+    for (const ScoredEffect& effect : ranked.along->effects)
+      if (effect.candidate.type == type) return effect.score.evidence;
+    return 0.0;
+  };
+  const auto alone = [&](const std::string& type) {
+    const std::optional<size_t> k = ranked.FindUsable(type);
+    return k ? ranked.effects[*k].evidence : 0.0;
+  };
   std::vector<RivalPair> rivals;
-  for (const bool first : {true, false}) {
-    const std::string &replaced = pair.names[first ? 0 : 1], &kept = pair.names[first ? 1 : 0];
+  for (const size_t at : {0u, 1u}) {
+    const std::string &replaced = pair.names[at], &kept = pair.names[1 - at];
     const EffectFamily family = FamilyOf(families, replaced);
     if (family == EffectFamily::kOther) continue;
-    for (size_t k = 0; k < ranked.effects.size(); ++k) {
-      const RankedEffect& effect = ranked.effects[k];
-      const std::string& type = effect.scored.candidate.type;
-      if (ranked.IsUsable(k) && effect.predicts && !pair.Contains(type) &&
-          FamilyOf(families, type) == family)
-        rivals.push_back({kept, type, effect.evidence});
+    for (const RankedEffect& other : ranked.effects) {
+      const std::string& type = other.scored.candidate.type;
+      if (pair.Contains(type) || FamilyOf(families, type) != family ||
+          IsFitted(ranked.pairs, kept, type) || (other.HasUsableRefit() && !other.predicts))
+        continue;
+      if (kept == ranked.along_type) {
+        if (first_order(type) >= kThresholds.refit.least_evidence)
+          rivals.push_back({kept, type, first_order(replaced) - first_order(type)});
+      } else if (other.HasUsableRefit()) {
+        rivals.push_back({type, kept, alone(replaced) - alone(type)});
+      }
     }
   }
   std::stable_sort(rivals.begin(), rivals.end(),
-                   [](const RivalPair& a, const RivalPair& b) { return a.evidence > b.evidence; });
+                   [](const RivalPair& a, const RivalPair& b) { return a.lost < b.lost; });
   return rivals;
 }
 
-// A pair that was fitted has the advantage of the fit over those that first order weighs. If one is
-// most probable, fits its rivals, too.
-Decision FitRivalPairs(const RefitContext& context, const DiagnosisOptions& options,
-                       Decision decision, RefittedRanking* ranked, RefitNoise* noise,
-                       Diagnosis* diagnosis) {
-  std::set<std::set<std::string>> tried;
-  while (tried.size() < kMostRivalPairs) {
-    const HypothesisProbability best = decision.record.probabilities.front();
-    if (best.kind != HypothesisProbability::Kind::kPair ||
-        !IsRefitted(ranked->pairs, best.names[0], best.names[1]))
-      break;
-    const std::vector<RivalPair> rivals =
-        RivalsOf(best, *ranked, diagnosis->decision_input.families);
-    const auto next = std::find_if(rivals.begin(), rivals.end(), [&](const RivalPair& rival) {
-      return !IsRefitted(ranked->pairs, rival.kept, rival.other) &&
-             tried.count({rival.kept, rival.other}) == 0;
+// If the most probable hypothesis is a pair that was fitted, fits its rivals as well, because a fit
+// explains more than the first-order estimate of a rival.
+void FitRivalPairs(OpenDecision* open) {
+  const RefittedRanking& ranked = *open->ranked;
+  std::vector<RivalPair> failed;
+  for (int fits = 0; fits < kMostRivalPairs && ranked.along; ++fits) {
+    const HypothesisProbability best = open->Best();
+    if (best.kind != HypothesisProbability::Kind::kPair) break;
+    // Another pair may have become the most probable one.
+    std::vector<RivalPair> next{{best.names[0], best.names[1]}};
+    if (IsFitted(ranked.pairs, best.names[0], best.names[1]))
+      next = RivalsOf(best, ranked, open->diagnosis->decision_input.families);
+    std::erase_if(next, [&](const RivalPair& one) {
+      return std::any_of(failed.begin(), failed.end(), [&](const RivalPair& other) {
+        return one.first == other.first && one.further == other.further;
+      });
     });
-    if (next == rivals.end()) break;
-    tried.insert({next->kept, next->other});
-    const auto model = ModelWith(next->other, context, *ranked, noise->level, options);
-    if (FitPair(*model, next->kept, noise->level, ranked))
-      decision = RefitWhatIsStated(context, ranked, noise, diagnosis);
+    if (next.empty()) break;
+    if (AddPair(next.front().first, next.front().further, open))
+      open->DecideAgain();
+    else
+      failed.push_back(next.front());
   }
-  return decision;
 }
 
 // Looks closer where that may change the decision: along the motion of the best effect, at pairs
@@ -248,9 +263,11 @@ Decision FitRivalPairs(const RefitContext& context, const DiagnosisOptions& opti
 // their place.
 void DecideUpon(const RefitContext& context, const DiagnosisOptions& options,
                 RefittedRanking* ranked, RefitNoise* noise, Diagnosis* diagnosis) {
-  Decision decision = RefitWhatIsStated(context, ranked, noise, diagnosis);
-  decision = DecideAlongBest(context, options, std::move(decision), ranked, noise, diagnosis);
-  decision = FitRivalPairs(context, options, std::move(decision), ranked, noise, diagnosis);
+  OpenDecision open{context, options, ranked, noise, diagnosis, {}};
+  open.DecideAgain();
+  DecideAlongBest(&open);
+  FitRivalPairs(&open);
+  Decision& decision = open.decision;
   DecisionInput& input = diagnosis->decision_input;
   if (decision.verdict == Verdict::kNuisance && context.ranking.adopted.HasMore()) {
     diagnosis->alternatives = RefitInPlaceOfNuisances(context, *ranked, *noise, options.refits);

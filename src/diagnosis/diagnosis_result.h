@@ -5,6 +5,7 @@
 #define LACUNA_DIAGNOSIS_DIAGNOSIS_RESULT_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "diagnosis/effect_ranking.h"
 #include "diagnosis/effect_refit.h"
 #include "record/agreement_record.h"
+#include "record/by_data_kind.h"
 #include "record/decision_record.h"
 #include "record/verdict.h"
 
@@ -27,6 +29,7 @@ struct RankedEffect {
   double evidence = 0;                   // log Bayes factor against the model as it is
   double held_out_evidence = 0;          // the part of it that the held-out frames contribute
   double explained = 0;                  // share of the squared misfit
+  std::optional<ByDataKind> removed;     // RemovedMisfit (removed_misfit.h) of the refit
   double rms_over_sigma = 0;             // all frames, with the adopted nuisances at their best
   Eigen::VectorXd values;                // the effect's parameters; empty: there is no usable refit
   Eigen::VectorXd model;                 // as in EffectRefit

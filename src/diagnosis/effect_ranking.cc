@@ -359,7 +359,7 @@ EffectRanking HypothesisRanking::Rank() && {
   ranking_.effects = ScoredEntries();
   ranking_.tried = Tried();
   ranking_.space = SpaceBeside(misfit_, hypotheses_.columns(Eigen::all, base_), PriorsOfBase(),
-                               ranking_, "", ranking_.noise);
+                               ranking_, {}, ranking_.noise);
   ranking_.agreement =
       CompareRecordings(problem_, values_, misfit_, ranking_.adopted, ranking_.noise);
   misfit_.jacobian.resize(0, 0);
@@ -371,10 +371,11 @@ EffectRanking HypothesisRanking::Rank() && {
 
 HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixXd& base,
                             std::vector<LinearPrior> priors, const EffectRanking& ranking,
-                            const std::string& without, const NoiseLevel& noise,
+                            const std::vector<std::string>& without, const NoiseLevel& noise,
                             bool base_has_adopted) {
   const auto is_in_base = [&](const TriedVariant& tried) {
-    return tried.type == without || (tried.is_adopted && base_has_adopted);
+    return std::count(without.begin(), without.end(), tried.type) > 0 ||
+           (tried.is_adopted && base_has_adopted);
   };
   Eigen::Index width = base.cols() + ranking.unknown_force.cols();
   for (const TriedVariant& tried : ranking.tried)

@@ -58,12 +58,12 @@ struct EffectRanking {
 };
 
 // The space of all hypotheses that a ranking has tried, beside the columns `base` (m, the rows of
-// `misfit`) with these priors, for the residual of `misfit`. `without`: a type of effect that is
-// left out, because it is part of the base. `base_has_adopted`: so are the adopted nuisances;
+// `misfit`) with these priors, for the residual of `misfit`. `without`: types of effects that are
+// left out, because they are part of the base. `base_has_adopted`: so are the adopted nuisances;
 // otherwise they are hypotheses like the others.
 HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixXd& base,
                             std::vector<LinearPrior> priors, const EffectRanking& ranking,
-                            const std::string& without, const NoiseLevel& noise,
+                            const std::vector<std::string>& without, const NoiseLevel& noise,
                             bool base_has_adopted = true);
 
 // What an earlier ranking of the same recordings has decided: which nuisances are part of the

@@ -58,9 +58,9 @@ RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise) {
 }
 
 HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking& ranking,
-                        const std::string& type, const NoiseLevel& noise) {
+                        const std::vector<std::string>& types, const NoiseLevel& noise) {
   return SpaceBeside(hypothesis.misfit, hypothesis.misfit.jacobian, hypothesis.priors, ranking,
-                     type, noise);
+                     types, noise);
 }
 
 namespace {

@@ -34,6 +34,15 @@ LinearisedMisfit ComparedAs(LinearisedMisfit misfit, const LinearisedMisfit& cor
   return misfit;
 }
 
+// The adopted nuisances of a hypothesis at their best amounts. `columns`: theirs alone; both are
+// whitened.
+LinearFit FitAdopted(const FittedHypothesis& hypothesis, const Eigen::VectorXd& residual,
+                     const Eigen::MatrixXd& columns, const NoiseLevel& noise) {
+  const auto own = hypothesis.priors.begin() + hypothesis.parameters;
+  return LinearGaussianModel(residual, columns, {own, hypothesis.priors.end()})
+      .FitAll(noise.variance);
+}
+
 // A change of the parameters in the units of MovedBy, and the log evidence that it would gain.
 struct BestStep {
   Eigen::VectorXd change;
@@ -131,12 +140,9 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
       WhitenedRows(misfit.jacobian, misfit, noise.correlation_time, fitted_only);
   const Eigen::VectorXd residual =
       WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only);
-  const auto own = hypothesis.priors.begin() + hypothesis.parameters;
   // The amounts of adopted nuisances are at their best; the parameters stay where they are.
-  const LinearFit adopted =
-      LinearGaussianModel(residual, columns.rightCols(columns.cols() - hypothesis.parameters),
-                          {own, hypothesis.priors.end()})
-          .FitAll(noise.variance);
+  const LinearFit adopted = FitAdopted(
+      hypothesis, residual, columns.rightCols(columns.cols() - hypothesis.parameters), noise);
   double prior_cost = 0;
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
     const LinearPrior& prior = hypothesis.priors[static_cast<size_t>(k)];
@@ -153,6 +159,16 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
   evidence.log_evidence =
       nothing.log_evidence - 0.5 * (evidence.misfit / noise.variance + prior_cost);
   return evidence;
+}
+
+Eigen::VectorXd WhitenedResidual(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
+  const LinearisedMisfit& misfit = hypothesis.misfit;
+  const Eigen::Index adopted = misfit.jacobian.cols() - hypothesis.parameters;
+  const Eigen::VectorXd residual =
+      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false);
+  const Eigen::MatrixXd columns =
+      WhitenedRows(misfit.jacobian.rightCols(adopted), misfit, noise.correlation_time, false);
+  return residual + columns * FitAdopted(hypothesis, residual, columns, noise).change;
 }
 
 Settled Settle(const CalibrationProblem& problem, Settled start, const AdoptedNuisances& adopted,

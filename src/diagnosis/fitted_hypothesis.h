@@ -35,6 +35,10 @@ struct HypothesisEvidence {
 HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise,
                               bool fitted_only = false);
 
+// The residual of all frames that the misfit of EvidenceOf() is the square of: whitened, in σ, with
+// the adopted nuisances at their best amounts.
+Eigen::VectorXd WhitenedResidual(const FittedHypothesis& hypothesis, const NoiseLevel& noise);
+
 // Replaces the columns of the adopted nuisances of a hypothesis, after those of the parameters.
 void SetNuisances(const AdoptedNuisances& adopted, const LinearisedMisfit& correspondences,
                   FittedHypothesis* hypothesis);

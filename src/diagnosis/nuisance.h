@@ -52,7 +52,7 @@ struct NuisanceCard {
   // The nuisance is simulated and bounded, and belongs to every model, whatever its evidence.
   bool is_always_in_model = false;
   // The columns are differences of further simulations, which rankings along the same motion share
-  // (scene_columns.h). RefittedModel computes them anew along the motion of a refit.
+  // (scene_columns.h). RankAlong() computes them anew along the motion of a refit.
   bool is_shared_in_scene = false;
   // Each frame has amounts of its own: those of the fitted frames predict nothing in held-out ones.
   bool acts_on_single_frames = false;

@@ -6,7 +6,6 @@
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/nuisance_catalogue.h"
-#include "diagnosis/refits.h"
 
 namespace lacuna {
 namespace {
@@ -54,41 +53,59 @@ SceneColumns OtherScene(const SceneColumns& of_baseline, const ScoredVariant& ef
   return scene;
 }
 
+PredictionStudy StudyWith(const BaselineModel& baseline, const ScoredVariant& effect) {
+  return WithEffect(baseline.problem.StudyAt(baseline.values), effect);
+}
+
 }  // namespace
 
-RefittedModel::RefittedModel(const BaselineModel& baseline, const ScoredVariant& effect,
-                             const EffectRefit& refit, const std::vector<std::string>& without,
-                             const DecidedBase& decided)
-    : baseline_(baseline),
-      effect_(effect.candidate.type),
-      study_(WithEffect(baseline.problem.StudyAt(baseline.values), effect)),
-      problem_(study_, baseline.problem.body()->mesh),
-      values_(refit.values_at_fit) {
+EffectRanking RankAlong(const BaselineModel& baseline, const ScoredVariant& effect,
+                        const EffectRefit& refit, const std::vector<std::string>& without,
+                        const DecidedBase& decided) {
+  const PredictionStudy study = StudyWith(baseline, effect);
+  const CalibrationProblem problem(study, baseline.problem.body()->mesh);
   const Eigen::Index shared = static_cast<Eigen::Index>(baseline.problem.study().fitted.size());
-  const Eigen::Index own = static_cast<Eigen::Index>(study_.fitted.size()) - shared;
-  ranking_ = RankEffects(
-      problem_, values_, baseline.progress, without,
-      OtherScene(decided.ranking.scene, effect, NuisancesAlong(problem_, refit, {shared, own})),
+  const Eigen::Index own = static_cast<Eigen::Index>(study.fitted.size()) - shared;
+  return RankEffects(
+      problem, refit.values_at_fit, baseline.progress, without,
+      OtherScene(decided.ranking.scene, effect, NuisancesAlong(problem, refit, {shared, own})),
       &decided);
 }
 
-std::optional<WeighedPair> RefittedModel::RefitWith(const std::string& further, double first,
-                                                    const NoiseLevel& noise) const {
-  for (const ScoredEffect& scored : ranking_.effects) {
-    if (scored.candidate.type != further) continue;
-    const BaselineModel model =
-        RankedBaseline(problem_, values_, ranking_, baseline_.progress, baseline_.kept);
-    const EffectRefit alone = Refit(model, nullptr, ranking_.adopted, /*is_far_off=*/false);
-    RankedEffect effect;
-    effect.scored = scored;
-    const EffectRefit both = RefitEffect({model, ranking_}, ranking_.adopted, alone,
-                                         /*is_found=*/true, &effect);
-    if (!alone.message.empty() || !both.message.empty()) return std::nullopt;
-    return WeighedPair{effect_, further, EvidenceOf(both, noise).all - first,
-                       SpaceOf(both.hypothesis, ranking_, further, noise),
-                       Predicts(both, alone, noise)};
+std::optional<FittedPair> FitPair(const BaselineModel& baseline, const ScoredVariant& first,
+                                  const EffectRefit& refit, const std::string& further,
+                                  const EffectRanking& ranking, bool is_along_first) {
+  const auto scored =
+      std::find_if(ranking.effects.begin(), ranking.effects.end(),
+                   [&](const ScoredEffect& effect) { return effect.candidate.type == further; });
+  if (scored == ranking.effects.end()) return std::nullopt;
+  const PredictionStudy study = StudyWith(baseline, first);
+  const CalibrationProblem problem(study, baseline.problem.body()->mesh);
+  const Eigen::VectorXd& values = refit.values_at_fit;
+  const LinearisedMisfit misfit =
+      problem.Linearise(values, /*with_jacobian=*/false, {}, &baseline.misfit, &baseline.misfit);
+  if (!misfit.usable) return std::nullopt;
+  const BaselineModel model{problem,
+                            values,
+                            misfit,
+                            baseline.progress,
+                            baseline.kept,
+                            ranking.noise,
+                            ranking.ModelError()};
+  FittedPair pair;
+  pair.first = first.candidate.type;
+  pair.second.scored = *scored;
+  // First order has predicted the parameters of the model that was ranked, which may be others.
+  if (!is_along_first) {
+    pair.second.scored.expected_values = values;
+    for (ScoredVariant& other : pair.second.scored.elsewhere) other.expected_values = values;
   }
-  return std::nullopt;
+  pair.alone = Refit(model, nullptr, ranking.adopted, /*is_far_off=*/false);
+  if (!pair.alone.message.empty()) return std::nullopt;
+  pair.both =
+      RefitEffect({model, ranking}, ranking.adopted, pair.alone, /*is_found=*/true, &pair.second);
+  if (!pair.both.message.empty()) return std::nullopt;
+  return pair;
 }
 
 }  // namespace lacuna

@@ -27,6 +27,7 @@ RecordedRefit RefitOf(const RankedEffect& effect) {
   refit.evidence = effect.evidence;
   refit.held_out_evidence = effect.held_out_evidence;
   refit.explained = effect.explained;
+  refit.removed = effect.removed;
   refit.rms_over_sigma = effect.rms_over_sigma;
   refit.errors = effect.errors;
   for (const NamedEstimate& other : effect.others)

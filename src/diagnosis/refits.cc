@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "diagnosis/adequacy.h"
 #include "diagnosis/projected_hypotheses.h"
+#include "diagnosis/removed_misfit.h"
 #include "diagnosis/thresholds.h"
 
 namespace lacuna {
@@ -147,7 +148,7 @@ std::vector<ScoredEffect> ScoredBeside(const RefitContext& context, const Effect
   if (IsFarOff(context.ranking.misfit)) return effects;
   const FittedHypothesis& at = baseline.hypothesis;
   const HypothesisSpace space =
-      SpaceBeside(at.misfit, at.misfit.jacobian, at.priors, context.ranking, "",
+      SpaceBeside(at.misfit, at.misfit.jacobian, at.priors, context.ranking, {},
                   context.ranking.noise, base_has_adopted);
   const ProjectedHypotheses beside(space);
   const double penalty = SelectionPenalty(effects.size());
@@ -167,6 +168,12 @@ std::vector<ScoredEffect> ScoredBeside(const RefitContext& context, const Effect
 }
 
 }  // namespace
+
+std::optional<size_t> RefittedRanking::FindUsable(const std::string& type) const {
+  for (size_t k = 0; k < effects.size(); ++k)
+    if (effects[k].scored.candidate.type == type && IsUsable(k)) return k;
+  return std::nullopt;
+}
 
 double RmsOverSigma(const FittedHypothesis& hypothesis) {
   return RmsInNoise(hypothesis.residual, hypothesis.misfit);
@@ -307,6 +314,10 @@ RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {
     if (!ranked->IsUsable(k)) continue;
     ranked->effects[k].predicts = Predicts(ranked->refits[k], ranked->baseline, noise.level);
     SetEvidence(ranked->refits[k], before, noise.level, rivals, &ranked->effects[k]);
+    if (ranked->IsUsable(k))
+      ranked->effects[k].removed =
+          RemovedMisfit(ranked->baseline.hypothesis, ranked->refits[k].hypothesis, noise.level,
+                        context.model.problem);
   }
   return noise;
 }
@@ -388,9 +399,13 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
     if (!with.message.empty()) continue;
     effect.predicts = Predicts(with, bare, noise.level);
     SetEvidence(with, before, noise.level, ranked.effects.size(), &effect);
-    space = SpaceBeside(with.hypothesis.misfit, with.hypothesis.misfit.jacobian,
-                        with.hypothesis.priors, ranking, effect.scored.candidate.type, noise.level,
-                        /*base_has_adopted=*/false);
+    if (effect.HasUsableRefit())
+      effect.removed =
+          RemovedMisfit(bare.hypothesis, with.hypothesis, noise.level, context.model.problem);
+    space =
+        SpaceBeside(with.hypothesis.misfit, with.hypothesis.misfit.jacobian, with.hypothesis.priors,
+                    ranking, {effect.scored.candidate.type}, noise.level,
+                    /*base_has_adopted=*/false);
   }
   return alternatives;
 }

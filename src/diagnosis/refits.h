@@ -27,6 +27,19 @@ struct RefitContext {
   const EffectRanking& ranking;  // of `model`; its list of effects is not used
 };
 
+// The model fitted with two effects, beside the columns of RefittedRanking::along.
+struct FittedPair {
+  std::string first;
+  RankedEffect second;  // as it was refitted beside the first; its evidence is not set
+  EffectRefit both;
+  EffectRefit alone;  // the first effect alone, fitted again from its refit
+
+  bool IsOf(const std::string& a, const std::string& b) const {
+    const std::string& other = second.scored.candidate.type;
+    return (first == a && other == b) || (first == b && other == a);
+  }
+};
+
 // The effects of a ranking with their refits. A refit is usable if its effect is marked as refitted
 // and has no message.
 struct RefittedRanking {
@@ -45,12 +58,12 @@ struct RefittedRanking {
   // hypotheses, with the baseline's columns.
   std::string along_type;
   std::shared_ptr<const EffectRanking> along, along_for_others;
-  std::vector<WeighedPair> pairs;                // fits with two effects, beside these columns
+  std::vector<FittedPair> pairs;                 // beside the same columns
   std::map<size_t, FittedHypothesis> nuisances;  // fits with a nuisance, by its index
 
-  bool IsUsable(size_t effect) const {
-    return effects[effect].refitted && effects[effect].refit_message.empty();
-  }
+  bool IsUsable(size_t effect) const { return effects[effect].HasUsableRefit(); }
+  // The index of the effect of this type; nothing if it has no usable refit.
+  std::optional<size_t> FindUsable(const std::string& type) const;
 };
 
 // The noise of the measurements, and the rms of the hypothesis with the smallest residual.

@@ -128,7 +128,10 @@ class HeaderReader {
     const std::string_view type = words[words.size() - 2];
     property.is_floating = Contains(kFloatingTypes, type);
     property.bytes = BytesOf(type);
-    if (property.is_list) property.bytes_of_length = BytesOf(words[2]);
+    if (property.is_list) {
+      property.bytes_of_length = BytesOf(words[2]);
+      property.has_signed_length = words[2].front() != 'u';
+    }
     PlyElement& element = header_.elements.back();
     if (FindProperty(element, property.name) != nullptr)
       Fail(fmt::format("names the property \"{}\" of \"{}\" a second time", property.name,
@@ -177,10 +180,14 @@ class BodyReader {
   bool Pass(const PlyProperty& property) {
     uint64_t values = 1;
     if (property.is_list) {
-      const std::optional<uint64_t> length =
-          header_.is_text ? LengthInText() : LengthInBytes(property.bytes_of_length);
+      const std::optional<int64_t> length =
+          header_.is_text ? LengthInText() : LengthInBytes(property);
       if (!length) return false;
-      values = *length;
+      if (*length < 0)
+        throw InputError(
+            {file_.string()},
+            fmt::format("is malformed: a list \"{}\" has the length {}", property.name, *length));
+      values = static_cast<uint64_t>(*length);
     }
     const size_t rest = content_.size() - at_;
     if (values > rest) return false;
@@ -223,21 +230,23 @@ class BodyReader {
     return number;
   }
 
-  std::optional<uint64_t> LengthInText() {
+  std::optional<int64_t> LengthInText() {
     const std::string_view word = NextWord();
     if (word.empty()) return std::nullopt;
-    return static_cast<uint64_t>(std::max<int64_t>(0, RequireNumber<int64_t>(word)));
+    return RequireNumber<int64_t>(word);
   }
 
-  std::optional<uint64_t> LengthInBytes(size_t bytes) {
+  std::optional<int64_t> LengthInBytes(const PlyProperty& list) {
+    const size_t bytes = list.bytes_of_length;
     if (content_.size() - at_ < bytes) return std::nullopt;
-    uint64_t number = 0;
+    int64_t number = 0;
     for (size_t k = 0; k < bytes; ++k) {
       const size_t byte = header_.is_big_endian ? k : bytes - 1 - k;
       number = number << 8 | static_cast<unsigned char>(content_[at_ + byte]);
     }
     at_ += bytes;
-    return number;
+    const int64_t past_largest = int64_t{1} << (8 * bytes - 1);  // of a signed number
+    return list.has_signed_length && number >= past_largest ? number - 2 * past_largest : number;
   }
 
   const std::filesystem::path& file_;

@@ -19,6 +19,7 @@ struct PlyProperty {
   bool is_floating = false;    // float or double
   size_t bytes = 0;            // of a value in a binary file
   size_t bytes_of_length = 0;  // of the length of a list
+  bool has_signed_length = false;
 };
 
 struct PlyElement {
@@ -44,9 +45,10 @@ const PlyProperty* FindProperty(const PlyElement& element, std::string_view name
 // than the file has bytes.
 PlyHeader ReadPlyHeader(const std::filesystem::path& file, std::string_view content);
 
-// Throws InputError for a body that ends too early, and for a word of a text that is not a finite
-// number, or not a whole one where its type is. Other readers make room for a list before they read
-// it, and take whatever they find behind the end of a file for its length.
+// Throws InputError for a body that ends too early, for a list with a negative length, and for a
+// word of a text that is not a finite number, or not a whole one where its type is. Other readers
+// make room for a list before they read it, and take whatever they find behind the end of a file
+// for its length.
 void CheckPlyBody(const std::filesystem::path& file, std::string_view content,
                   const PlyHeader& header);
 

@@ -71,9 +71,7 @@ json ToJson(const CalibrationRecord& record) {
     if (parameter.with_finest_mesh)
       parameters.back()["with_finest_mesh"] = *parameter.with_finest_mesh;
     if (parameter.at_limit) parameters.back()["at_limit"] = *parameter.at_limit;
-    if (const auto& shares = parameter.shares)
-      parameters.back()["shares"] = {
-          {"markers", shares->markers}, {"scans", shares->scans}, {"forces", shares->forces}};
+    if (parameter.shares) parameters.back()["shares"] = ByDataKindToJson(*parameter.shares);
     if (const auto& near = parameter.near_bound)
       parameters.back()["near_bound"] = {{"side", near->is_upper ? "upper" : "lower"},
                                          {"bound", near->bound}};
@@ -138,12 +136,7 @@ CalibrationRecord FromJson(const json& value) {
     parameter.estimate = EstimateFromJson(entry);
     if (entry.contains("with_finest_mesh")) parameter.with_finest_mesh = entry["with_finest_mesh"];
     if (entry.contains("at_limit")) parameter.at_limit = entry["at_limit"];
-    if (entry.contains("shares")) {
-      const json& shares = entry["shares"];
-      parameter.shares =
-          DataShares{shares.at("markers").get<double>(), shares.at("scans").get<double>(),
-                     shares.at("forces").get<double>()};
-    }
+    if (entry.contains("shares")) parameter.shares = ByDataKindFromJson(entry["shares"]);
     if (entry.contains("near_bound"))
       parameter.near_bound = {entry["near_bound"].at("side") == "upper",
                               entry["near_bound"].at("bound")};

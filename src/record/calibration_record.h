@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "record/by_data_kind.h"
 #include "record/fitted_reaction.h"
 #include "record/model_errors.h"
 #include "record/parameter_estimate.h"
@@ -34,11 +35,7 @@ std::optional<NearBound> FindNearBound(const ParameterEstimate& estimate, bool l
 // How much of the information about a parameter comes from each kind of data: its part of
 // Σ (∂r/∂θ)², summed over the whitened rows of the fitted data, with all other parameters fixed.
 // The sum of the shares is 1.
-struct DataShares {
-  double markers = 0;  // tracked points included
-  double scans = 0;    // point clouds, depth images, meshes
-  double forces = 0;   // torques included
-};
+using DataShares = ByDataKind;
 
 struct FittedParameter {
   std::string name, unit;

@@ -82,6 +82,7 @@ json RefitToJson(const RecordedRefit& refit) {
                 {"explained_share", refit.explained},
                 {"rms_over_sigma", refit.rms_over_sigma},
                 {"others", others}};
+  if (refit.removed) value["removed_misfit"] = ByDataKindToJson(*refit.removed);
   value.update(ErrorsToJson(refit.errors));
   return value;
 }
@@ -96,6 +97,8 @@ RecordedRefit RefitFromJson(const json& value, bool has_held_out) {
   refit.errors = ErrorsFromJson(value, has_held_out);
   for (const json& other : value.at("others"))
     refit.others.push_back({other.at("parameter"), other.at("unit"), IntervalFromJson(other)});
+  if (value.contains("removed_misfit"))  // diagnoses of earlier versions have none
+    refit.removed = ByDataKindFromJson(value.at("removed_misfit"));
   return refit;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "record/agreement_record.h"
+#include "record/by_data_kind.h"
 #include "record/decision_record.h"
 #include "record/model_errors.h"
 #include "record/verdict.h"
@@ -58,6 +59,9 @@ struct RecordedRefit {
   double rms_over_sigma = 0;     // all frames, with the adopted nuisances at their best
   ModelErrors errors;
   std::vector<RecordedValue> others;  // empty if the refit is not usable
+  // σ², the squared misfit of each kind of data that the effect removes; negative where it adds to
+  // it. Absent where the fitted recordings have one kind only, and if the refit is not usable.
+  std::optional<ByDataKind> removed = {};
 };
 
 // An effect in its best variant.

@@ -39,17 +39,24 @@ void CheckStageName(const std::string& stage) {
       << "'" << stage << "' is not a valid name of a stage";
 }
 
-// Refuses a folder that contains something other than a run.
-void RefuseForeignFolder(const fs::path& folder) {
-  if (fs::exists(folder / kManifestName)) return;
+bool HasForeignFiles(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     const fs::path& path = entry.path();
-    if (path.filename() == kLockName || IsPartialFolder(path) || IsTemporaryFile(path)) continue;
+    if (path.filename() != kLockName && !IsPartialFolder(path) && !IsTemporaryFile(path))
+      return true;
+  }
+  return false;
+}
+
+// Refuses a folder that contains something other than a run. Another process may be making its
+// first stage at this moment: its manifest comes before the stage, and is therefore looked for
+// afterwards.
+void RefuseForeignFolder(const fs::path& folder) {
+  if (HasForeignFiles(folder) && !fs::exists(folder / kManifestName))
     throw InputError(
         {folder.string()},
         fmt::format("is not a run folder (it has no {}) and is not empty; choose another",
                     kManifestName));
-  }
 }
 
 // Whether a manifest is damaged so that it is no JSON any more. The run then starts over. Manifests

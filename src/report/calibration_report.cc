@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -82,16 +81,12 @@ std::string HeldText(const CalibrationRecord& record) {
 
 // Empty where the fit has one kind of data only.
 std::string SharesTable(const std::vector<FittedParameter>& parameters) {
-  constexpr std::pair<const char*, double DataShares::*> kKinds[] = {
-      {"markers", &DataShares::markers},
-      {"scans", &DataShares::scans},
-      {"forces", &DataShares::forces}};
   std::string rows, header;
-  for (const auto& [name, share] : kKinds) header += fmt::format(" {:>9}", name);
+  for (const auto& [name, share] : kDataKinds) header += fmt::format(" {:>9}", name);
   for (const FittedParameter& parameter : parameters) {
     if (!parameter.shares) continue;
     rows += fmt::format("  {:34}", parameter.name);
-    for (const auto& [name, share] : kKinds)
+    for (const auto& [name, share] : kDataKinds)
       rows += fmt::format(" {:>7.0f} %", 100 * (*parameter.shares).*share);
     rows += "\n";
   }

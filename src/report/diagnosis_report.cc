@@ -66,6 +66,28 @@ std::string OtherParameters(const RecordedRefit& refit) {
   return fmt::format("{}", fmt::join(others, ", "));
 }
 
+// From which kinds of data an effect removes squared misfit, and to which it adds some.
+std::string RemovedMisfitText(const ByDataKind& removed) {
+  double all = 0;
+  bool adds = false;
+  for (const auto& [name, kind] : kDataKinds) {
+    all += removed.*kind;
+    adds = adds || removed.*kind < 0;
+  }
+  std::vector<std::string> parts;
+  for (const auto& [name, kind] : kDataKinds) {
+    const double own = removed.*kind;
+    if (own == 0) continue;  // these recordings have no such data
+    const bool is_first = parts.empty();
+    parts.push_back(
+        adds ? fmt::format("{} of the {} by {:+.1f} σ²", is_first ? "the squared misfit" : "that",
+                           name, -own)
+             : fmt::format("{}{} of the {}", PercentText(own / all), is_first ? " is" : "", name));
+  }
+  return (adds ? "it changes " : "of the squared misfit that it removes, ") +
+         EnumerationText(parts);
+}
+
 std::string EffectLines(const RecordedEffect& effect) {
   const bool usable = effect.HasUsableRefit();
   std::string text =
@@ -81,6 +103,7 @@ std::string EffectLines(const RecordedEffect& effect) {
     more.push_back("to " + OtherParameters(*effect.refit));
   if (!effect.look_alikes.empty())
     more.push_back(fmt::format("looks like {}", fmt::join(effect.look_alikes, ", ")));
+  if (usable && effect.refit->removed) more.push_back(RemovedMisfitText(*effect.refit->removed));
   if (effect.refit && !usable) more.push_back(effect.refit->message);
   if (!more.empty()) text += Wrapped(fmt::format("{}", fmt::join(more, "; ")), "      ", "      ");
   return text;

@@ -56,6 +56,12 @@ void Add(bool counts, Rate* rate) {
   rate->part += counts;
 }
 
+// Adds the frequency with which the simulated rules do what is counted.
+void AddSimulated(double frequency, Rate* rate) {
+  ++rate->simulated_cases;
+  rate->simulated += frequency;
+}
+
 void CountOneEffect(const FinishedTrial& finished, TrialRates* rates) {
   const std::string& truth = finished.trial.hidden.front().type;
   const TrialOutcome& outcome = finished.outcome;
@@ -69,8 +75,8 @@ void CountOneEffect(const FinishedTrial& finished, TrialRates* rates) {
                     [&](const std::string& name) { return IsMember(name, truth); }),
         &rates->family);
   if (!outcome.simulated) return;
-  ++rates->simulated_cases;
-  rates->simulated_named += outcome.simulated->named;
+  AddSimulated(outcome.simulated->named, &rates->named);
+  AddSimulated(outcome.simulated->wrong_member, &rates->wrong_member);
   if (outcome.simulated->named >= kDecidable) Add(is_right, &rates->decidable_named);
 }
 
@@ -82,8 +88,8 @@ void CountRemoved(const FinishedTrial& finished, TrialRates* rates) {
   Add(naming.is_outside, &rates->removed_outside);
   Add(is_unknown, &rates->not_in_library);
   if (!outcome.simulated) return;
-  ++rates->simulated_removed;
-  rates->simulated_unknown += outcome.simulated->unknown;
+  AddSimulated(outcome.simulated->wrong_member, &rates->removed_member);
+  AddSimulated(outcome.simulated->unknown, &rates->not_in_library);
   if (outcome.simulated->unknown >= kDecidable) Add(is_unknown, &rates->unknown);
 }
 
@@ -114,9 +120,6 @@ struct RateLine {
   const char* truth;
   std::string what;
   Rate rate;
-  // The sum of the simulated frequencies, over so many cases.
-  double simulated = 0;
-  int simulated_cases = 0;
 };
 
 std::vector<RateLine> LinesOf(const TrialRates& rates) {
@@ -126,15 +129,14 @@ std::vector<RateLine> LinesOf(const TrialRates& rates) {
   return {
       {nothing, "an effect is named", rates.named_in_controls},
       {nothing, "an effect is named, the measurement has a fault", rates.named_in_hard_controls},
-      {one, "it is named, and no other", rates.named, rates.simulated_named, rates.simulated_cases},
+      {one, "it is named, and no other", rates.named},
       {one, "... where the simulated rules name it in " + decidable, rates.decidable_named},
       {one, "of verdicts with names: one is of its family", rates.family},
       {one, "another one of its family is named", rates.wrong_member},
       {one, "one of another family is named", rates.outside_family},
       {removed, "one of its family is named", rates.removed_member},
       {removed, "one of another family is named", rates.removed_outside},
-      {removed, "not in library", rates.not_in_library, rates.simulated_unknown,
-       rates.simulated_removed},
+      {removed, "not in library", rates.not_in_library},
       {removed, "... where the simulated rules say so in " + decidable, rates.unknown}};
 }
 
@@ -162,14 +164,15 @@ std::string RatesInWords(const TrialRates& rates) {
     if (line.truth != truth) text += fmt::format("{}\n", line.truth);
     truth = line.truth;
     text += fmt::format("  {:54}", line.what);
-    if (line.rate.whole == 0)
+    const Rate& rate = line.rate;
+    if (rate.whole == 0)
       text += " no such case";
     else
-      text += fmt::format(" {:3} of {:3} ({:.0f} %)", line.rate.part, line.rate.whole,
-                          100.0 * line.rate.part / line.rate.whole);
-    if (line.simulated_cases > 0)
+      text += fmt::format(" {:3} of {:3} ({:.0f} %)", rate.part, rate.whole,
+                          100.0 * rate.part / rate.whole);
+    if (rate.simulated_cases > 0)
       text += fmt::format("; the simulated rules: {:.0f} % on average over {} cases",
-                          100 * line.simulated / line.simulated_cases, line.simulated_cases);
+                          100 * rate.simulated / rate.simulated_cases, rate.simulated_cases);
     text += "\n";
   }
   text += "probabilities of statements, and how many were true\n";
@@ -190,7 +193,8 @@ nlohmann::json RatesToJson(const TrialRates& rates) {
                      {"cases", line.rate.part},
                      {"of", line.rate.whole},
                      {"predicted", nullptr}});
-    if (line.simulated_cases > 0) lines.back()["predicted"] = line.simulated / line.simulated_cases;
+    if (line.rate.simulated_cases > 0)
+      lines.back()["predicted"] = line.rate.simulated / line.rate.simulated_cases;
   }
   for (const ReliabilityBin& bin : rates.reliability)
     if (bin.statements > 0)

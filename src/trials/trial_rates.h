@@ -1,5 +1,5 @@
-// What a suite of sealed cases tells of the diagnosis as a whole: how often it names an effect, how
-// often rightly, beside what these recordings allow, and whether its probabilities are frequencies.
+// How well the diagnosis does on a suite of sealed cases: how often it names an effect, how often
+// rightly, beside what these recordings allow, and whether its probabilities are frequencies.
 #ifndef LACUNA_TRIALS_TRIAL_RATES_H_
 #define LACUNA_TRIALS_TRIAL_RATES_H_
 
@@ -19,6 +19,10 @@ inline constexpr double kDecidable = 0.8;
 
 struct Rate {
   int part = 0, whole = 0;
+  // The sum of the frequencies with which the simulated rules (TrialOutcome::simulated) do what is
+  // counted, over `simulated_cases` cases; 0 cases where they do not predict it.
+  double simulated = 0;
+  int simulated_cases = 0;
 };
 
 // Statements (which effects are missing, or which nuisance) whose probability lies in one interval,
@@ -33,21 +37,16 @@ struct ReliabilityBin {
 struct TrialRates {
   // Verdicts "missing" although nothing is.
   Rate named_in_controls, named_in_hard_controls;
-  // Cases with one hidden effect of the catalogue. simulated_named is the sum of what the
-  // simulation of the rules predicts for each of `simulated_cases`.
+  // Cases with one hidden effect of the catalogue.
   Rate named;            // the verdict "missing" names the effect and no other
   Rate decidable_named;  // the same, of those that kDecidable calls decidable
   Rate family;           // of the verdicts that name effects, those that name one of its family
   Rate wrong_member;     // the verdict "missing" names another effect of its family
   Rate outside_family;   // ... of another family
-  int simulated_cases = 0;
-  double simulated_named = 0;
   // Cases whose effect was removed from the catalogue.
   Rate removed_member, removed_outside;  // an effect of its family, of another family was named
   Rate not_in_library;                   // all such verdicts
   Rate unknown;                          // those of the decidable cases
-  int simulated_removed = 0;
-  double simulated_unknown = 0;
   // All cases but those with a removed effect, and those with the verdict "not in library", which
   // says that the truth is not among the hypotheses.
   std::array<ReliabilityBin, 5> reliability = {

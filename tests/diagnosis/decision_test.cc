@@ -213,7 +213,9 @@ TEST(Decide, WeighsEveryPairThatWasFitted) {
   EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "drag"));
   input.pairs.push_back({"gravity", "mass_damping", 60, synthetic.With(noise)});
   EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "mass_damping"));
-  // A pair whose first effect is refuted is no hypothesis.
+  // Neither is a pair named of which one effect is refuted.
+  input.refits.push_back({"mass_damping", 20, synthetic.With(noise), /*predicts=*/false});
+  EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "drag"));
   input.refits.front().predicts = false;
   for (const HypothesisProbability& one : Decide(input).record.probabilities)
     EXPECT_FALSE(one.Contains("gravity") && one.kind == Kind::kPair);

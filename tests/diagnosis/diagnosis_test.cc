@@ -75,13 +75,14 @@ TEST(Diagnosis, DoesNotTakeTheErrorOfAVeryCoarseMeshForAnEffect) {
   EXPECT_GT(mesh->candidate.columns.cwiseAbs().maxCoeff(), truth.noise);
 }
 
-TEST(Diagnosis, FitsTheMostProbablePairOfEffects) {
+TEST(Diagnosis, FitsTheMostProbablePairOfEffectsAndItsRivals) {
   HeldBarTruth truth;
   truth.alpha = 8;
   const Eigen::Vector3d steady(0, 0.05, 0.1);  // N, of a bar of 32 g
   truth.body_force = [&](double) { return steady; };
   const Diagnosis diagnosis = DiagnoseBar(truth, kWithoutDamping);
-  ASSERT_GE(diagnosis.decision_input.pairs.size(), 1u) << ExplainVerdict(RecordOf(diagnosis));
+  // The most probable pair, and its rivals.
+  ASSERT_GE(diagnosis.decision_input.pairs.size(), 2u) << ExplainVerdict(RecordOf(diagnosis));
   const WeighedPair& pair = diagnosis.decision_input.pairs.front();
   EXPECT_EQ(pair.first, "mass_damping");
   // A force on a part of the bar is much like one on all of it.
@@ -90,7 +91,7 @@ TEST(Diagnosis, FitsTheMostProbablePairOfEffects) {
   EXPECT_GT(pair.gain, 20);
   const HypothesisProbability& best = diagnosis.decision.probabilities.front();
   EXPECT_EQ(best.kind, HypothesisProbability::Kind::kPair);
-  // The pairs that were fitted in competition are of the same two families, and each is weighed.
+  // The rivals are of the same two families, and each is weighed.
   const auto family = [&](const std::string& effect) {
     return FamilyOf(diagnosis.decision_input.families, effect);
   };
@@ -197,6 +198,7 @@ TEST(Diagnosis, IsRecordedWithTheVerdictAndEveryEffect) {
   place.value = 0.05;
   place.high = 0.07;
   refitted.others = {{"drag.centre_x", "m", place}};
+  refitted.removed = ByDataKind{0, 20, 10};
   const TemporaryFolder folder;
   WriteDiagnosisFile(RecordOf(diagnosis), folder / "diagnosis.json");
   std::ifstream stream(folder / "diagnosis.json");
@@ -215,6 +217,8 @@ TEST(Diagnosis, IsRecordedWithTheVerdictAndEveryEffect) {
   EXPECT_EQ(read.ranking[1].sizes[0].refitted->high, INFINITY);
   EXPECT_FALSE(read.ranking[0].refit.has_value());
   ASSERT_TRUE(read.ranking[1].refit.has_value());
+  ASSERT_TRUE(read.ranking[1].refit->removed.has_value());
+  EXPECT_EQ(read.ranking[1].refit->removed->scans, 20);
   const std::vector<RecordedValue>& others = read.ranking[1].refit->others;
   ASSERT_EQ(others.size(), 1u);
   EXPECT_EQ(others[0].parameter, "drag.centre_x");

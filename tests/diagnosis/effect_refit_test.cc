@@ -182,7 +182,7 @@ TEST(SpaceOfARefit, WeighsTheOtherEffectsBesideIt) {
                    {"there", "", there, {{0, 1, false}}},
                    {"a nuisance", "", there, {{0, 1, false}}, 0, true}};
   misfit.residual += 0.2 * there;
-  const HypothesisSpace space = SpaceOf(hypothesis, ranking, "refitted", kNoise);
+  const HypothesisSpace space = SpaceOf(hypothesis, ranking, {"refitted"}, kNoise);
   const ProjectedHypotheses projected(space);
   const Eigen::VectorXd factors =
       projected.LogBayesFactors(projected.Project(space.model.toward()));

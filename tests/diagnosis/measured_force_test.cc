@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "calibration/calibration_fits.h"
@@ -67,6 +68,18 @@ TEST(MeasuredForceInADiagnosis, LeadsToTheEffectThatIsMissing) {
       << ExplainVerdict(RecordOf(diagnosis));
   EXPECT_THAT(diagnosis.effects, testing::Contains("strain_stiffening"))
       << ExplainVerdict(RecordOf(diagnosis));
+  const auto found = std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(),
+                                  [](const RankedEffect& effect) {
+                                    return effect.scored.candidate.type == "strain_stiffening";
+                                  });
+  ASSERT_NE(found, diagnosis.ranking.end());
+  ASSERT_TRUE(found->HasUsableRefit()) << found->refit_message;
+  ASSERT_TRUE(found->removed);
+  // Squares give half as much evidence at most, where the noise is no smaller than stated. The
+  // markers follow the grips with or without the effect: what they gain or lose is mostly noise.
+  EXPECT_GT(found->removed->forces, std::max(1.0, found->evidence));
+  EXPECT_LT(std::abs(found->removed->markers), found->removed->forces);
+  EXPECT_EQ(found->removed->scans, 0);
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ output: ../results/small_bend
 frames: {last: 3}
 )";
 
-// One recording of the demo and few elements. The diagnosis passes through all of its stages; what
-// it says does not matter here.
+// One recording of the demo, with few elements, so that a fit and a diagnosis take seconds. What
+// the diagnosis says does not matter here.
 constexpr char kSmallEffect[] = R"(use: hidden_effect.yaml
 name: small_effect
 output: ../results/small_effect

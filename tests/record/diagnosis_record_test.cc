@@ -52,6 +52,7 @@ TEST(DiagnosisRecord, IsReadBackAsItWasWritten) {
   refitted.refit->errors.without_nuisances = 1;
   refitted.refit->others.push_back({"drag.centre_x", "m", {0.05, -INFINITY, 0.07}});
   record.ranking.push_back(refitted);
+  record.ranking.back().refit->removed = ByDataKind{700, 0, -3};
   record.alternatives = {{refitted}, 1000, 10};
   const TemporaryFolder folder;
   WriteDiagnosisFile(record, folder / "diagnosis.json");
@@ -72,7 +73,12 @@ TEST(DiagnosisRecord, IsReadBackAsItWasWritten) {
   EXPECT_EQ(read.decision.FamilyProbability(EffectFamily::kLossOutside), 0.9);
   EXPECT_EQ(read.ranking[1].sizes[0].refitted->high, INFINITY);
   EXPECT_EQ(read.ranking[1].refit->others[0].found.low, -INFINITY);
-  EXPECT_EQ(read.alternatives.effects.size(), 1u);
+  ASSERT_TRUE(read.ranking[1].refit->removed);
+  EXPECT_EQ(read.ranking[1].refit->removed->markers, 700);
+  EXPECT_EQ(read.ranking[1].refit->removed->scans, 0);
+  EXPECT_EQ(read.ranking[1].refit->removed->forces, -3);
+  ASSERT_EQ(read.alternatives.effects.size(), 1u);
+  EXPECT_FALSE(read.alternatives.effects[0].refit->removed);
   EXPECT_EQ(read.alternatives.rms_over_sigma_without_both, 10);
   // Every field is written and read: the second file equals the first.
   WriteDiagnosisFile(read, folder / "again.json");

@@ -175,7 +175,8 @@ TEST(TrialRates, CountsDecidableCasesAndReliability) {
   finished.trial.hidden = {{"drag", {}, {}, 2}};
   finished.outcome.verdict = Verdict::kMissing;
   finished.outcome.named = {"drag"};
-  finished.outcome.simulated = RecordedPower{.truth = {"drag"}, .named = 0.9, .most_wrong = ""};
+  finished.outcome.simulated =
+      RecordedPower{.truth = {"drag"}, .named = 0.9, .wrong_member = 0.05, .most_wrong = ""};
   using Kind = HypothesisProbability::Kind;
   // The second hypothesis contains a nuisance that every model has here.
   finished.outcome.probabilities = {
@@ -189,7 +190,8 @@ TEST(TrialRates, CountsDecidableCasesAndReliability) {
   FinishedTrial removed = finished;
   removed.trial.group = "removed";
   removed.outcome.verdict = Verdict::kNotInLibrary;
-  removed.outcome.simulated = RecordedPower{.truth = {"drag"}, .unknown = 0.95, .most_wrong = ""};
+  removed.outcome.simulated =
+      RecordedPower{.truth = {"drag"}, .wrong_member = 0.02, .unknown = 0.95, .most_wrong = ""};
   FinishedTrial faulty = finished;
   faulty.trial = {};
   faulty.trial.group = "hard_control";
@@ -210,7 +212,12 @@ TEST(TrialRates, CountsDecidableCasesAndReliability) {
   const TrialRates rates = RatesOf({finished, open, removed, faulty, twice, outside});
   EXPECT_EQ(rates.decidable_named.part, 2);
   EXPECT_EQ(rates.decidable_named.whole, 2);
-  EXPECT_NEAR(rates.simulated_named, 2.1, 1e-12);
+  EXPECT_NEAR(rates.named.simulated, 2.1, 1e-12);
+  EXPECT_EQ(rates.named.simulated_cases, 3);
+  EXPECT_NEAR(rates.wrong_member.simulated, 0.15, 1e-12);
+  EXPECT_NEAR(rates.removed_member.simulated, 0.04, 1e-12);
+  EXPECT_NEAR(rates.not_in_library.simulated, 1.9, 1e-12);
+  EXPECT_EQ(rates.not_in_library.simulated_cases, 2);
   EXPECT_EQ(rates.unknown.part, 1);
   EXPECT_EQ(rates.unknown.whole, 2);
   EXPECT_EQ(rates.not_in_library.part, 1);
@@ -223,6 +230,9 @@ TEST(TrialRates, CountsDecidableCasesAndReliability) {
   EXPECT_NEAR(rates.reliability[4].stated, 3.74, 1e-12);
   const nlohmann::json json = RatesToJson(rates);
   EXPECT_EQ(json.at("calibration").size(), 2u);
+  // The lines "another one of its family is named" and "one of another family is named".
+  EXPECT_NEAR(json.at("rates").at(5).at("predicted").get<double>(), 0.05, 1e-12);
+  EXPECT_TRUE(json.at("rates").at(6).at("predicted").is_null());
   EXPECT_NEAR(json.at("calibration").at(1).at("frequency").get<double>(), 0.75, 1e-12);
 }
 

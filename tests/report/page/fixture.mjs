@@ -311,6 +311,7 @@ function diagnosis(isSecond, errors) {
     effect('pressure', 'Pressure in a cavity', 183.2, 3420, 'Pa', { absorbed: 0.88, lookAlikes: ['swelling'], experiment: 'Turn the body: pressure rotates with it, gravity does not' }),
     effect('swelling', 'Swelling', 182.8, -0.0194, '', { absorbed: 0.88, lookAlikes: ['pressure'] }),
     effect('linear', 'Linear elasticity', -4.2, 0.1, '', { absorbed: 0.5 })];
+  if (!isSecond) ranking[0].refit.removed_misfit = { markers: 18715.3, scans: 0, forces: -2.4 };
   return {
     schema_version: 10, verdict: isSecond ? 'adequate' : 'missing', effects: isSecond ? [] : ['viscoelastic_branch'], reasons: [], next_steps: [],
     noise_m: NOISE, scan_noise_m: 0, noise_correlation_time_s: 0.007, noise_variance_factor: 1, time_step_s: 0.005, decision: decision(isSecond),

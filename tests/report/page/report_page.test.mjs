@@ -374,7 +374,7 @@ test('every part is there when its data is', async () => {
   const full = await open(fixture('full'));
   for (const id of ['errors', 'force', 'physics', 'plan', 'parameters', 'agreement', 'validation', 'provenance']) assert.equal(await full.page.locator(`#${id}`).count(), 1, id);
   const text = await full.page.locator('main').textContent();
-  for (const part of ['Error over time', 'Position of', 'Force on jaw', 'Load against displacement, x', 'y, over time', 'Torque on jaw', 'Torque against rotation, x', 'measured, held out', 'Against speed', 'Against distance from the grip', 'Torque', 'Power', 'Effects that were tried', 'Which pairs these recordings can separate',
+  for (const part of ['Error over time', 'Position of', 'Force on jaw', 'Load against displacement, x', 'y, over time', 'Torque on jaw', 'Torque against rotation, x', 'measured, held out', 'Against speed', 'Against distance from the grip', 'Torque', 'Power', 'Effects that were tried', 'that each refitted effect removes', '18715.3', 'Which pairs these recordings can separate',
                       'What such recordings would have said', 'The next recording', 'force that holds', 'The recordings disagree', 'traded off with young_modulus', 'in the information about a parameter', '75 %', 'metric: probability', 'Commands that reproduce it', 'noise of the measurement']) assert.ok(text.includes(part), part);
   assert.ok(!text.includes('Load against displacement, y'), 'a force over a motion that the grip does not make');
   await full.close();

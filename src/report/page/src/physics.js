@@ -48,8 +48,17 @@ function candidates(diagnosis) {
     foldRows(table(null, [['effect'], ['probability', true], ['first-order evidence', true, 'from derivatives along the fitted motion'], ['evidence of the refit', true], ['size [95 %] or ± 1 σ'], ['held-out error', true], ['plain error', true], ['absorbed', true, 'share of the signature that the fitted parameters can imitate'], ['look-alikes', false, 'effects that these recordings cannot distinguish to first order']], rows,
       (r) => (diagnosis.effects?.includes(shown[r].effect) ? 'named' : null)), fewest, 'effects'),
     silent.length > 0 ? h('p', { class: 'explain' }, `No evidence for: ${silent.join(', ').slice(0, 1500)}.`) : null,
+    removedMisfit(diagnosis),
     diagnosis.untried?.length ? h('p', { class: 'explain' }, `Not tried: ${diagnosis.untried.map((one) => `${one.effect} (${one.why})`).join('; ').slice(0, 1500)}.`) : null,
     experiments(diagnosis, shown));
+}
+
+// From which kinds of data each refitted effect removes squared misfit; only where there are several.
+function removedMisfit(diagnosis) {
+  const rows = (diagnosis.ranking ?? []).filter((effect) => isUsable(effect) && effect.refit.removed_misfit)
+    .map((effect) => [h('code', {}, name(effect.effect)), ...['markers', 'scans', 'forces'].map((kind) => fixed(effect.refit.removed_misfit[kind], 1))]);
+  return table('Squared misfit, in σ², that each refitted effect removes; negative where it adds to it',
+    [['effect'], ['markers', true], ['scans', true], ['forces', true]], rows);
 }
 
 function experiments(diagnosis, shown) {
