@@ -100,8 +100,15 @@ class HeaderReader {
     return WordsOf(line);
   }
 
+  // Other readers take more bytes for blanks than we do, and would find other words.
+  void RequireName(std::string_view name) const {
+    if (!std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c <= '~'; }))
+      Fail("holds a name with other characters than letters, digits and signs of ASCII");
+  }
+
   void AddElement(const std::vector<std::string_view>& words) {
     if (words.size() != 3) Fail("expected element NAME COUNT");
+    RequireName(words[1]);
     PlyElement element;
     element.name = words[1];
     const auto [end, problem] =
@@ -120,6 +127,7 @@ class HeaderReader {
     if (words.size() != (property.is_list ? 5u : 3u))
       Fail("expected property TYPE NAME or property list TYPE TYPE NAME");
     property.name = words.back();
+    RequireName(property.name);
     for (size_t k = property.is_list ? 2 : 1; k + 1 < words.size(); ++k)
       if (BytesOf(words[k]) == 0)
         Fail(fmt::format("got \"{}\"; expected the type of a property", words[k]));
