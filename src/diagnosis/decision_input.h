@@ -25,14 +25,11 @@ struct WeighedRefit {
 struct WeighedPair {
   std::string first, second;
   // Log evidence minus that of the refit with the first effect alone (WeighedRefit), beside the
-  // same nuisances. Contains DecisionInput::natural_value of the second effect.
+  // same nuisances. Contains the evidence for the natural values of both effects, as this fit
+  // estimates them, less that of the first one alone.
   double gain = 0;
   HypothesisSpace space;  // along the refit; the parameters of both are in its base
   bool predicts = true;   // beyond the first alone
-
-  bool IsOf(const std::string& a, const std::string& b) const {
-    return (first == a && second == b) || (first == b && second == a);
-  }
 };
 
 // The model fitted again with one nuisance beside those of the baseline.

@@ -24,15 +24,15 @@ bool IsAnythingDetectable(const std::vector<RankedEffect>& ranking) {
   return false;
 }
 
-// The evidence for the value that nature gives to the effect's size; 0 where it gives none.
-double EvidenceOfNaturalValue(const RankedEffect& effect) {
-  const CandidateEffect& candidate = effect.scored.candidate;
-  if (candidate.effect == nullptr || effect.sizes.size() != 3) return 0;
+// The evidence for the value that nature gives to an effect's size; 0 where it gives none.
+double EvidenceOfNaturalValue(const CandidateEffect& candidate,
+                              const std::vector<ParameterEstimate>& sizes) {
+  if (candidate.effect == nullptr || sizes.size() != 3) return 0;
   const EffectCard& card = candidate.effect->Card();
   if (card.natural_magnitude == 0) return 0;
   Eigen::Vector3d mean, deviation;
   for (int k = 0; k < 3; ++k) {
-    const ParameterEstimate& size = effect.sizes[static_cast<size_t>(k)];
+    const ParameterEstimate& size = sizes[static_cast<size_t>(k)];
     mean[k] = size.value;
     deviation[k] = size.posterior_deviation;
   }
@@ -58,9 +58,12 @@ std::optional<WeighedPair> Weigh(const FittedPair& pair, const RefittedRanking& 
                                  const EffectRanking& ranking, const NoiseLevel& noise) {
   const std::optional<size_t> first = ranked.FindUsable(pair.first);
   if (!first) return std::nullopt;
+  const RankedEffect& alone = ranked.effects[*first];
   const double gain = EvidenceOf(pair.both, noise).all -
                       EvidenceOf(ranked.refits[*first], noise).all +
-                      EvidenceOfNaturalValue(pair.second);
+                      EvidenceOfNaturalValue(pair.second.scored.candidate, pair.second.sizes) +
+                      EvidenceOfNaturalValue(alone.scored.candidate, pair.sizes_of_first) -
+                      EvidenceOfNaturalValue(alone.scored.candidate, alone.sizes);
   if (!std::isfinite(gain)) return std::nullopt;
   const std::string& second = pair.second.scored.candidate.type;
   return WeighedPair{pair.first, second, gain,
@@ -103,7 +106,7 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
         {candidate.type, effect.evidence + penalty,
          SpaceAlong(ranked.refits[k].hypothesis, ranked, ranking, {candidate.type}, noise.level),
          effect.predicts});
-    if (const double natural = EvidenceOfNaturalValue(effect); natural != 0)
+    if (const double natural = EvidenceOfNaturalValue(candidate, effect.sizes); natural != 0)
       input.natural_value[candidate.type] = natural;
   }
   for (const FittedPair& pair : ranked.pairs)

@@ -9,9 +9,8 @@
 
 #include "calibration/calibration_fits.h"
 #include "diagnosis/decision_maker.h"
-#include "diagnosis/decision_rules.h"
 #include "diagnosis/effect_refit.h"
-#include "diagnosis/pair_refit.h"
+#include "diagnosis/open_decision.h"
 #include "diagnosis/recording_power.h"
 #include "diagnosis/refits.h"
 #include "diagnosis/thresholds.h"
@@ -20,12 +19,6 @@
 namespace lacuna {
 namespace {
 
-// DecideAlongBest() computes columns anew or fits a pair so many times at most. Higher: slower,
-// where several hypotheses are nearly equal.
-constexpr int kMostLooks = 4;
-// The largest number of pairs that FitRivalPairs() fits. Higher: slower, where many members of a
-// family explain the same residual.
-constexpr int kMostRivalPairs = 3;
 // A halving of the time step divides the evidence of the unknown part of its error by about this
 // number: an error of second order becomes a quarter, and evidence grows with its square.
 constexpr double kEvidencePerHalving = 16;
@@ -98,174 +91,14 @@ std::vector<std::string> EffectsOfInterest(const Decision& decision, const Decis
   return effects;
 }
 
-// The effects that the hypotheses of a statement contain, but that were not refitted.
-std::vector<size_t> WithoutRefit(const Decision& decision, const RefittedRanking& ranked) {
-  std::vector<size_t> effects;
-  for (const size_t k : NameFrom(decision.record.probabilities).kept)
-    for (const std::string& name : decision.record.probabilities[k].names)
-      for (size_t e = 0; e < ranked.effects.size(); ++e)
-        if (ranked.effects[e].scored.candidate.type == name && !ranked.effects[e].refitted)
-          effects.push_back(e);
-  return effects;
-}
-
-// Refits what the decision would state without a refit, and so on: only refits are believed.
-// Returns the decision, and sets the noise and the input that belong to it.
-Decision RefitWhatIsStated(const RefitContext& context, RefittedRanking* ranked, RefitNoise* noise,
-                           Diagnosis* diagnosis) {
-  for (;;) {
-    WeighNuisances(*ranked, *noise, &diagnosis->nuisances);
-    diagnosis->decision_input = MakeDecisionInput(context, *ranked, *noise, *diagnosis);
-    Decision decision = Decide(diagnosis->decision_input);
-    const int before = ranked->count;
-    RefitAll(context, WithoutRefit(decision, *ranked), ranked);
-    if (ranked->count == before) return decision;
-    *noise = WeighRefits(context, ranked);
-  }
-}
-
-bool IsFitted(const std::vector<FittedPair>& pairs, const std::string& a, const std::string& b) {
-  return std::any_of(pairs.begin(), pairs.end(),
-                     [&](const FittedPair& one) { return one.IsOf(a, b); });
-}
-
-// What the steps below look at, and change.
-struct OpenDecision {
-  const RefitContext& context;
-  const DiagnosisOptions& options;
-  RefittedRanking* ranked;
-  RefitNoise* noise;
-  Diagnosis* diagnosis;
-  Decision decision;
-
-  const HypothesisProbability& Best() const { return decision.record.probabilities.front(); }
-  void DecideAgain() { decision = RefitWhatIsStated(context, ranked, noise, diagnosis); }
-};
-
-// Ranks everything anew along the motion of the refit with this effect. Returns whether there is
-// such a refit.
-bool LookAlongRefit(const std::string& effect, OpenDecision* open) {
-  RefittedRanking& ranked = *open->ranked;
-  const std::optional<size_t> k = ranked.FindUsable(effect);
-  if (!k) return false;
-  LookAlong(
-      open->context, effect,
-      RankAlong(open->context.model, ranked.effects[*k].scored, ranked.refits[*k],
-                open->options.without, DecidedBase{open->context.ranking, open->noise->level}),
-      &ranked);
-  *open->noise = WeighRefits(open->context, &ranked);
-  return true;
-}
-
-// Fits the model with a refitted effect and a further one. Returns whether that succeeded.
-bool AddPair(const std::string& first, const std::string& further, OpenDecision* open) {
-  RefittedRanking& ranked = *open->ranked;
-  const std::optional<size_t> k = ranked.FindUsable(first);
-  if (!k || !ranked.along) return false;
-  std::optional<FittedPair> pair =
-      FitPair(open->context.model, ranked.effects[*k].scored, ranked.refits[*k], further,
-              *ranked.along, first == ranked.along_type);
-  if (pair) ranked.pairs.push_back(*std::move(pair));
-  return pair.has_value();
-}
-
-// Where an effect is most probable, decides anew with the columns of its own motion and, where that
-// is a pair, with the fit of both, until the most probable hypothesis has been looked at in this
-// way.
-void DecideAlongBest(OpenDecision* open) {
-  using Kind = HypothesisProbability::Kind;
-  const RefittedRanking& ranked = *open->ranked;
-  for (int look = 0; look < kMostLooks; ++look) {
-    const HypothesisProbability best = open->Best();
-    if (best.kind != Kind::kEffect && best.kind != Kind::kPair) break;
-    if (!ranked.along || !best.Contains(ranked.along_type)) {
-      if (!LookAlongRefit(best.names.front(), open)) break;
-    } else if (best.kind == Kind::kPair && !IsFitted(ranked.pairs, best.names[0], best.names[1])) {
-      const bool is_first = best.names[0] == ranked.along_type;
-      if (!AddPair(ranked.along_type, best.names[is_first ? 1 : 0], open)) break;
-    } else {
-      break;
-    }
-    open->DecideAgain();
-  }
-}
-
-// Two effects that may explain the same residual as a pair that was fitted.
-struct RivalPair {
-  std::string first, further;
-  double lost =
-      0;  // evidence that replacing one effect of that pair costs, to first order or alone
-};
-
-// The pairs in which another effect of its family replaces one effect of `pair`, and which have not
-// been fitted, the most promising first. The first effect of each has a refit.
-std::vector<RivalPair> RivalsOf(const HypothesisProbability& pair, const RefittedRanking& ranked,
-                                const std::map<std::string, EffectFamily>& families) {
-  const auto first_order = [&](const std::string& type) {
-    for (const ScoredEffect& effect : ranked.along->effects)
-      if (effect.candidate.type == type) return effect.score.evidence;
-    return 0.0;
-  };
-  const auto alone = [&](const std::string& type) {
-    const std::optional<size_t> k = ranked.FindUsable(type);
-    return k ? ranked.effects[*k].evidence : 0.0;
-  };
-  std::vector<RivalPair> rivals;
-  for (const size_t at : {0u, 1u}) {
-    const std::string &replaced = pair.names[at], &kept = pair.names[1 - at];
-    const EffectFamily family = FamilyOf(families, replaced);
-    if (family == EffectFamily::kOther) continue;
-    for (const RankedEffect& other : ranked.effects) {
-      const std::string& type = other.scored.candidate.type;
-      if (pair.Contains(type) || FamilyOf(families, type) != family ||
-          IsFitted(ranked.pairs, kept, type) || (other.HasUsableRefit() && !other.predicts))
-        continue;
-      if (kept == ranked.along_type) {
-        if (first_order(type) >= kThresholds.refit.least_evidence)
-          rivals.push_back({kept, type, first_order(replaced) - first_order(type)});
-      } else if (other.HasUsableRefit()) {
-        rivals.push_back({type, kept, alone(replaced) - alone(type)});
-      }
-    }
-  }
-  std::stable_sort(rivals.begin(), rivals.end(),
-                   [](const RivalPair& a, const RivalPair& b) { return a.lost < b.lost; });
-  return rivals;
-}
-
-// If the most probable hypothesis is a pair that was fitted, fits its rivals as well, because a fit
-// explains more than the first-order estimate of a rival.
-void FitRivalPairs(OpenDecision* open) {
-  const RefittedRanking& ranked = *open->ranked;
-  std::vector<RivalPair> failed;
-  for (int fits = 0; fits < kMostRivalPairs && ranked.along; ++fits) {
-    const HypothesisProbability best = open->Best();
-    if (best.kind != HypothesisProbability::Kind::kPair) break;
-    // Another pair may have become the most probable one.
-    std::vector<RivalPair> next{{best.names[0], best.names[1]}};
-    if (IsFitted(ranked.pairs, best.names[0], best.names[1]))
-      next = RivalsOf(best, ranked, open->diagnosis->decision_input.families);
-    std::erase_if(next, [&](const RivalPair& one) {
-      return std::any_of(failed.begin(), failed.end(), [&](const RivalPair& other) {
-        return one.first == other.first && one.further == other.further;
-      });
-    });
-    if (next.empty()) break;
-    if (AddPair(next.front().first, next.front().further, open))
-      open->DecideAgain();
-    else
-      failed.push_back(next.front());
-  }
-}
-
 // Looks closer where that may change the decision: along the motion of the best effect, at pairs
 // that could be taken for the best one and, where nuisances explain the residual, at effects in
 // their place.
 void DecideUpon(const RefitContext& context, const DiagnosisOptions& options,
                 RefittedRanking* ranked, RefitNoise* noise, Diagnosis* diagnosis) {
-  OpenDecision open{context, options, ranked, noise, diagnosis, {}};
+  OpenDecision open{context, options.without, ranked, noise, diagnosis, {}, {}};
   open.DecideAgain();
-  DecideAlongBest(&open);
+  RankAlongBest(&open);
   FitRivalPairs(&open);
   Decision& decision = open.decision;
   DecisionInput& input = diagnosis->decision_input;

@@ -79,6 +79,8 @@ std::optional<FittedPair> FitPair(const BaselineModel& baseline, const ScoredVar
       std::find_if(ranking.effects.begin(), ranking.effects.end(),
                    [&](const ScoredEffect& effect) { return effect.candidate.type == further; });
   if (scored == ranking.effects.end()) return std::nullopt;
+  // One elasticity law would replace the other.
+  if (first.candidate.replaces_material && scored->candidate.replaces_material) return std::nullopt;
   const PredictionStudy study = StudyWith(baseline, first);
   const CalibrationProblem problem(study, baseline.problem.body()->mesh);
   const Eigen::VectorXd& values = refit.values_at_fit;
@@ -90,7 +92,7 @@ std::optional<FittedPair> FitPair(const BaselineModel& baseline, const ScoredVar
                             misfit,
                             baseline.progress,
                             baseline.kept,
-                            ranking.noise,
+                            baseline.noise,
                             ranking.ModelError()};
   FittedPair pair;
   pair.first = first.candidate.type;
@@ -105,6 +107,9 @@ std::optional<FittedPair> FitPair(const BaselineModel& baseline, const ScoredVar
   pair.both =
       RefitEffect({model, ranking}, ranking.adopted, pair.alone, /*is_found=*/true, &pair.second);
   if (!pair.both.message.empty()) return std::nullopt;
+  const size_t shared = baseline.problem.study().fitted.size();
+  for (size_t k = 0; k < first.candidate.amplitude.size(); ++k)
+    pair.sizes_of_first.push_back(pair.both.calibration.estimates[shared + k]);
   return pair;
 }
 

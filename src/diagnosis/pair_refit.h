@@ -1,10 +1,10 @@
 // Two effects at once: a refitted effect, along whose motion everything else is ranked, and the fit
 // of the model with that effect and a further one.
 //
-// What an effect leaves may be a hundredth of what it explains, so that the columns of the mesh and
-// the time step must be those of its own motion. All pairs of a diagnosis are fitted beside the
-// same columns and are compared with the measurements as the baseline is, so that their evidence
-// can be compared.
+// The residual of a refit may be a hundredth of what its effect explains. The columns of the mesh
+// and the time step must therefore be computed along the motion with that effect. All pairs of a
+// diagnosis are fitted beside the same columns and compared with the same measured points, so that
+// their evidence can be compared.
 #ifndef LACUNA_DIAGNOSIS_PAIR_REFIT_H_
 #define LACUNA_DIAGNOSIS_PAIR_REFIT_H_
 

@@ -34,11 +34,6 @@ bool IsLikelyLocalMinimum(const EffectRanking& ranking, const EffectRefit& refit
                     EvidenceOf(refit.hypothesis, ranking.noise), noise, score.evidence);
 }
 
-// By how much an effect must be behind the best refit to be negligible, if that gains so much.
-double DecisiveLead(double gain) {
-  return std::max(kThresholds.refit.beaten_by, kThresholds.refit.beaten_share * gain);
-}
-
 // The cost of the fitted frames above which a refit is negligible beside the best one so far.
 double HopelessCost(const RefittedRanking& ranked) {
   if (!ranked.best) return std::numeric_limits<double>::infinity();
@@ -105,17 +100,19 @@ void PutBesideAlong(const RefitContext& context, size_t effect, RefittedRanking*
                           std::move(refit));
 }
 
-// The hypothesis with the smallest residual, the model without an effect among them.
+// The hypothesis with the smallest residual: the model without an effect, a refit or a pair.
 const FittedHypothesis& LeastResidual(const RefittedRanking& ranked, const NoiseLevel& noise) {
   const FittedHypothesis* best = &ranked.baseline.hypothesis;
   double least = EvidenceOf(*best, noise).misfit;
-  for (size_t k = 0; k < ranked.refits.size(); ++k) {
-    if (!ranked.IsUsable(k)) continue;
-    const double misfit = EvidenceOf(ranked.refits[k].hypothesis, noise).misfit;
-    if (misfit >= least) continue;
+  const auto compare = [&](const FittedHypothesis& hypothesis) {
+    const double misfit = EvidenceOf(hypothesis, noise).misfit;
+    if (misfit >= least) return;
     least = misfit;
-    best = &ranked.refits[k].hypothesis;
-  }
+    best = &hypothesis;
+  };
+  for (size_t k = 0; k < ranked.refits.size(); ++k)
+    if (ranked.IsUsable(k)) compare(ranked.refits[k].hypothesis);
+  for (const FittedPair& pair : ranked.pairs) compare(pair.both.hypothesis);
   return *best;
 }
 
@@ -173,6 +170,10 @@ std::optional<size_t> RefittedRanking::FindUsable(const std::string& type) const
   for (size_t k = 0; k < effects.size(); ++k)
     if (effects[k].scored.candidate.type == type && IsUsable(k)) return k;
   return std::nullopt;
+}
+
+double DecisiveLead(double gain) {
+  return std::max(kThresholds.refit.beaten_by, kThresholds.refit.beaten_share * gain);
 }
 
 double RmsOverSigma(const FittedHypothesis& hypothesis) {
@@ -312,6 +313,7 @@ RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {
   const size_t rivals = ranked->effects.size();
   for (size_t k = 0; k < rivals; ++k) {
     if (!ranked->IsUsable(k)) continue;
+    ranked->effects[k].removed.reset();
     ranked->effects[k].predicts = Predicts(ranked->refits[k], ranked->baseline, noise.level);
     SetEvidence(ranked->refits[k], before, noise.level, rivals, &ranked->effects[k]);
     if (ranked->IsUsable(k))

@@ -32,6 +32,7 @@ struct FittedPair {
   std::string first;
   RankedEffect second;  // as it was refitted beside the first; its evidence is not set
   EffectRefit both;
+  std::vector<ParameterEstimate> sizes_of_first;  // in `both`
   EffectRefit alone;  // the first effect alone, fitted again from its refit
 
   bool IsOf(const std::string& a, const std::string& b) const {
@@ -71,6 +72,9 @@ struct RefitNoise {
   NoiseLevel level;
   double least_rms_over_sigma = 0;
 };
+
+// By how much an effect must be behind the best refit to be negligible, if that gains so much.
+double DecisiveLead(double gain);
 
 // The rms residual over all frames, adopted nuisances at their best, over σ.
 double RmsOverSigma(const FittedHypothesis& hypothesis);
@@ -118,8 +122,8 @@ void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEff
 void LookAlong(const RefitContext& context, const std::string& type, EffectRanking along,
                RefittedRanking* ranked);
 
-// Estimates the noise from the refit with the smallest residual, and computes the evidence of all
-// refits. Replaces the results of an earlier call.
+// Estimates the noise from the refit or pair with the smallest residual, and computes the evidence
+// of all refits. Replaces the results of an earlier call.
 RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked);
 
 // Refits the model with each nuisance that first order puts near the best effect or above it.

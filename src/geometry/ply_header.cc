@@ -100,10 +100,11 @@ class HeaderReader {
     return WordsOf(line);
   }
 
-  // Other readers take more bytes for blanks than we do, and would find other words.
+  // Other readers split lines at more kinds of white space than this one, form feeds for example,
+  // and would find other words.
   void RequireName(std::string_view name) const {
     if (!std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c <= '~'; }))
-      Fail("holds a name with other characters than letters, digits and signs of ASCII");
+      Fail("has a name with a character that is not printable ASCII");
   }
 
   void AddElement(const std::vector<std::string_view>& words) {
@@ -189,7 +190,7 @@ class BodyReader {
     uint64_t values = 1;
     if (property.is_list) {
       const std::optional<int64_t> length =
-          header_.is_text ? LengthInText() : LengthInBytes(property);
+          header_.is_text ? LengthInText(property) : LengthInBytes(property);
       if (!length) return false;
       if (*length < 0)
         throw InputError(
@@ -238,10 +239,18 @@ class BodyReader {
     return number;
   }
 
-  std::optional<int64_t> LengthInText() {
+  std::optional<int64_t> LengthInText(const PlyProperty& list) {
     const std::string_view word = NextWord();
     if (word.empty()) return std::nullopt;
-    return RequireNumber<int64_t>(word);
+    const int64_t length = RequireNumber<int64_t>(word);
+    const int64_t largest =
+        (int64_t{1} << (8 * list.bytes_of_length - (list.has_signed_length ? 1 : 0))) - 1;
+    if (length > largest)
+      throw InputError({file_.string()},
+                       fmt::format("is malformed: a list \"{}\" has the length {}, but its type "
+                                   "ends at {}",
+                                   list.name, length, largest));
+    return length;
   }
 
   std::optional<int64_t> LengthInBytes(const PlyProperty& list) {

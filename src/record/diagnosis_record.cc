@@ -97,7 +97,8 @@ RecordedRefit RefitFromJson(const json& value, bool has_held_out) {
   refit.errors = ErrorsFromJson(value, has_held_out);
   for (const json& other : value.at("others"))
     refit.others.push_back({other.at("parameter"), other.at("unit"), IntervalFromJson(other)});
-  if (value.contains("removed_misfit"))  // diagnoses of earlier versions have none
+  // Absent with one kind of data, and in diagnoses of earlier versions.
+  if (value.contains("removed_misfit"))
     refit.removed = ByDataKindFromJson(value.at("removed_misfit"));
   return refit;
 }

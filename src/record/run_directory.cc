@@ -49,8 +49,9 @@ bool HasForeignFiles(const fs::path& folder) {
 }
 
 // Refuses a folder that contains something other than a run. Another process may be making its
-// first stage at this moment: its manifest comes before the stage, and is therefore looked for
-// afterwards.
+// first stage at this moment. Its manifest is written before the folder of the stage. If the
+// manifest is looked for after the folder was listed, a stage that was listed therefore always has
+// one.
 void RefuseForeignFolder(const fs::path& folder) {
   if (HasForeignFiles(folder) && !fs::exists(folder / kManifestName))
     throw InputError(

@@ -66,26 +66,39 @@ std::string OtherParameters(const RecordedRefit& refit) {
   return fmt::format("{}", fmt::join(others, ", "));
 }
 
-// From which kinds of data an effect removes squared misfit, and to which it adds some.
-std::string RemovedMisfitText(const ByDataKind& removed) {
+// "62 % belongs to the markers and 38 % to the forces"
+std::string SharesText(const ByDataKind& removed) {
   double all = 0;
-  bool adds = false;
-  for (const auto& [name, kind] : kDataKinds) {
-    all += removed.*kind;
-    adds = adds || removed.*kind < 0;
-  }
+  for (const auto& [name, kind] : kDataKinds) all += removed.*kind;
   std::vector<std::string> parts;
+  for (const auto& [name, kind] : kDataKinds)
+    if (removed.*kind != 0)
+      parts.push_back(fmt::format("{}{} to the {}", PercentText(removed.*kind / all),
+                                  parts.empty() ? " belongs" : "", name));
+  return EnumerationText(parts);
+}
+
+// "the squared misfit of the markers by -34.0 σ² and that of the forces by +2.5 σ²"
+std::string ChangesText(const ByDataKind& removed) {
+  std::vector<std::string> parts;
+  for (const auto& [name, kind] : kDataKinds)
+    if (removed.*kind != 0)
+      parts.push_back(fmt::format("{} of the {} by {:+.1f} σ²",
+                                  parts.empty() ? "the squared misfit" : "that", name,
+                                  -(removed.*kind)));
+  return EnumerationText(parts);
+}
+
+// From which kinds of data an effect removes squared misfit, and to which it adds some. Kinds that
+// the recordings do not have are 0.
+std::string RemovedMisfitText(const ByDataKind& removed) {
+  bool adds = false, removes = false;
   for (const auto& [name, kind] : kDataKinds) {
-    const double own = removed.*kind;
-    if (own == 0) continue;  // these recordings have no such data
-    const bool is_first = parts.empty();
-    parts.push_back(
-        adds ? fmt::format("{} of the {} by {:+.1f} σ²", is_first ? "the squared misfit" : "that",
-                           name, -own)
-             : fmt::format("{}{} of the {}", PercentText(own / all), is_first ? " is" : "", name));
+    adds = adds || removed.*kind < 0;
+    removes = removes || removed.*kind > 0;
   }
-  return (adds ? "it changes " : "of the squared misfit that it removes, ") +
-         EnumerationText(parts);
+  if (adds) return "it changes " + ChangesText(removed);
+  return removes ? "of the squared misfit that it removes, " + SharesText(removed) : "";
 }
 
 std::string EffectLines(const RecordedEffect& effect) {
@@ -103,7 +116,9 @@ std::string EffectLines(const RecordedEffect& effect) {
     more.push_back("to " + OtherParameters(*effect.refit));
   if (!effect.look_alikes.empty())
     more.push_back(fmt::format("looks like {}", fmt::join(effect.look_alikes, ", ")));
-  if (usable && effect.refit->removed) more.push_back(RemovedMisfitText(*effect.refit->removed));
+  if (usable && effect.refit->removed)
+    if (std::string removed = RemovedMisfitText(*effect.refit->removed); !removed.empty())
+      more.push_back(std::move(removed));
   if (effect.refit && !usable) more.push_back(effect.refit->message);
   if (!more.empty()) text += Wrapped(fmt::format("{}", fmt::join(more, "; ")), "      ", "      ");
   return text;

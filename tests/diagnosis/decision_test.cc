@@ -213,7 +213,7 @@ TEST(Decide, WeighsEveryPairThatWasFitted) {
   EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "drag"));
   input.pairs.push_back({"gravity", "mass_damping", 60, synthetic.With(noise)});
   EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "mass_damping"));
-  // Neither is a pair named of which one effect is refuted.
+  // A pair is not named if one of its effects is refuted.
   input.refits.push_back({"mass_damping", 20, synthetic.With(noise), /*predicts=*/false});
   EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "drag"));
   input.refits.front().predicts = false;

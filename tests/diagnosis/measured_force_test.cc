@@ -75,8 +75,9 @@ TEST(MeasuredForceInADiagnosis, LeadsToTheEffectThatIsMissing) {
   ASSERT_NE(found, diagnosis.ranking.end());
   ASSERT_TRUE(found->HasUsableRefit()) << found->refit_message;
   ASSERT_TRUE(found->removed);
-  // Squares give half as much evidence at most, where the noise is no smaller than stated. The
-  // markers follow the grips with or without the effect: what they gain or lose is mostly noise.
+  // The evidence is at most half of the squared misfit that is removed, because the variance of the
+  // noise is at least the stated one. The markers follow the grips with or without the effect: what
+  // they gain or lose is mostly noise.
   EXPECT_GT(found->removed->forces, std::max(1.0, found->evidence));
   EXPECT_LT(std::abs(found->removed->markers), found->removed->forces);
   EXPECT_EQ(found->removed->scans, 0);

@@ -8,6 +8,8 @@ if [ $# -ne 2 ]; then
   echo "usage: $0 BUILD RUNS" >&2
   exit 2
 fi
+: "${TMPDIR:=/dev/shm}"  # Some readers need temporary files.
+export TMPDIR
 build=$1
 runs=$2
 here=$(dirname "$0")

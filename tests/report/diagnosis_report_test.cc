@@ -63,11 +63,11 @@ TEST(DiagnosisReport, ShowsFromWhichDataAnEffectRemovesMisfit) {
     record.ranking[0].refit->removed = removed;
     return DiagnosisReport(record, "runs/bar");
   };
-  EXPECT_THAT(text({62, 0, 38}),
-              HasSubstr("      of the squared misfit that it removes, 62 % is of "
-                        "the markers and 38 % of the forces\n"));
+  EXPECT_THAT(text({62, 0, 38}), HasSubstr("      of the squared misfit that it removes, 62 % "
+                                           "belongs to the markers and 38 % to the forces\n"));
   EXPECT_THAT(text({-2.5, 0, 34}), HasSubstr("      it changes the squared misfit of the markers "
                                              "by +2.5 σ² and that of the forces by -34.0 σ²\n"));
+  EXPECT_THAT(text({0, 0, 0}), Not(HasSubstr("squared misfit that")));
   record.ranking[0].refit->removed.reset();  // one kind of data, or a diagnosis of earlier versions
   EXPECT_THAT(DiagnosisReport(record, "runs/bar"), Not(HasSubstr("that it removes")));
 }

@@ -57,7 +57,7 @@ function candidates(diagnosis) {
 function removedMisfit(diagnosis) {
   const rows = (diagnosis.ranking ?? []).filter((effect) => isUsable(effect) && effect.refit.removed_misfit)
     .map((effect) => [h('code', {}, name(effect.effect)), ...['markers', 'scans', 'forces'].map((kind) => fixed(effect.refit.removed_misfit[kind], 1))]);
-  return table('Squared misfit, in σ², that each refitted effect removes; negative where it adds to it',
+  return table('Squared misfit that each refitted effect removes from each kind of data, in σ². A negative number is misfit that it adds.',
     [['effect'], ['markers', true], ['scans', true], ['forces', true]], rows);
 }
 

@@ -1,0 +1,174 @@
+#include "diagnosis/open_decision.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "diagnosis/decision_maker.h"
+#include "diagnosis/decision_rules.h"
+#include "diagnosis/effect_refit.h"
+#include "diagnosis/pair_refit.h"
+#include "diagnosis/thresholds.h"
+
+namespace lacuna {
+namespace {
+
+using Kind = HypothesisProbability::Kind;
+
+// RankAlongBest() computes columns anew or fits a pair so many times at most. Higher: slower, where
+// several hypotheses are nearly equal.
+constexpr int kMostSteps = 4;
+// The largest number of pairs that FitRivalPairs() fits. Higher: slower, where many members of a
+// family explain the same residual.
+constexpr int kMostRivalPairs = 3;
+
+// The effects that the hypotheses of a statement contain, but that were not refitted.
+std::vector<size_t> WithoutRefit(const Decision& decision, const RefittedRanking& ranked) {
+  std::vector<size_t> effects;
+  for (const size_t k : NameFrom(decision.record.probabilities).kept)
+    for (const std::string& name : decision.record.probabilities[k].names)
+      for (size_t e = 0; e < ranked.effects.size(); ++e)
+        if (ranked.effects[e].scored.candidate.type == name && !ranked.effects[e].refitted)
+          effects.push_back(e);
+  return effects;
+}
+
+bool IsFitted(const std::vector<FittedPair>& pairs, const std::string& a, const std::string& b) {
+  return std::any_of(pairs.begin(), pairs.end(),
+                     [&](const FittedPair& one) { return one.IsOf(a, b); });
+}
+
+bool IsAmong(const std::vector<PairToFit>& pairs, const PairToFit& pair) {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const PairToFit& one) {
+    return (one.first == pair.first && one.further == pair.further) ||
+           (one.first == pair.further && one.further == pair.first);
+  });
+}
+
+// Ranks everything anew along the motion of the refit with this effect. Returns whether there is
+// such a refit.
+bool RankAlongRefit(const std::string& effect, OpenDecision* open) {
+  RefittedRanking& ranked = *open->ranked;
+  const std::optional<size_t> k = ranked.FindUsable(effect);
+  if (!k) return false;
+  LookAlong(open->context, effect,
+            RankAlong(open->context.model, ranked.effects[*k].scored, ranked.refits[*k],
+                      open->without, DecidedBase{open->context.ranking, open->noise->level}),
+            &ranked);
+  *open->noise = WeighRefits(open->context, &ranked);
+  return true;
+}
+
+// Fits a pair and decides again. Returns whether it could be fitted; if not, it is noted.
+bool AddPair(const PairToFit& wanted, OpenDecision* open) {
+  RefittedRanking& ranked = *open->ranked;
+  const std::optional<size_t> k = ranked.FindUsable(wanted.first);
+  std::optional<FittedPair> pair;
+  if (k && ranked.along)
+    pair = FitPair(open->context.model, ranked.effects[*k].scored, ranked.refits[*k],
+                   wanted.further, *ranked.along, wanted.first == ranked.along_type);
+  if (!pair) {
+    open->failed.push_back(wanted);
+    return false;
+  }
+  // The fit of the first effect alone, from which that of the pair has started, may have found a
+  // better minimum than its refit. The pair must not count that for the second effect.
+  EffectRefit& own = ranked.refits[*k];
+  const NoiseLevel& noise = open->noise->level;
+  if (EvidenceOf(pair->alone, noise).all > EvidenceOf(own, noise).all) {
+    own.at_fit = pair->alone.at_fit;
+    own.values_at_fit = pair->alone.values_at_fit;
+    own.hypothesis = pair->alone.hypothesis;
+  }
+  ranked.pairs.push_back(*std::move(pair));
+  *open->noise = WeighRefits(open->context, &ranked);
+  open->DecideAgain();
+  return true;
+}
+
+}  // namespace
+
+void OpenDecision::DecideAgain() {
+  for (;;) {
+    WeighNuisances(*ranked, *noise, &diagnosis->nuisances);
+    diagnosis->decision_input = MakeDecisionInput(context, *ranked, *noise, *diagnosis);
+    decision = Decide(diagnosis->decision_input);
+    const int before = ranked->count;
+    RefitAll(context, WithoutRefit(decision, *ranked), ranked);
+    if (ranked->count == before) return;
+    *noise = WeighRefits(context, ranked);
+  }
+}
+
+void RankAlongBest(OpenDecision* open) {
+  const RefittedRanking& ranked = *open->ranked;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const HypothesisProbability best = open->Best();
+    if (best.kind != Kind::kEffect && best.kind != Kind::kPair) break;
+    if (!ranked.along || !best.Contains(ranked.along_type)) {
+      if (!RankAlongRefit(best.names.front(), open)) break;
+      open->DecideAgain();
+    } else if (best.kind == Kind::kPair && !IsFitted(ranked.pairs, best.names[0], best.names[1])) {
+      const bool is_first = best.names[0] == ranked.along_type;
+      if (!AddPair({ranked.along_type, best.names[is_first ? 1 : 0]}, open)) break;
+    } else {
+      break;
+    }
+  }
+}
+
+void FitRivalPairs(OpenDecision* open) {
+  const RefittedRanking& ranked = *open->ranked;
+  for (int fits = 0; ranked.along && fits <= kMostRivalPairs; ++fits) {
+    const HypothesisProbability best = open->Best();
+    if (best.kind != Kind::kPair) break;
+    std::vector<PairToFit> next;
+    if (!IsFitted(ranked.pairs, best.names[0], best.names[1])) {
+      // Another pair has become the most probable one.
+      next.push_back({best.names[0], best.names[1]});
+    } else if (fits < kMostRivalPairs) {
+      const double hopeless = DecisiveLead(best.evidence);
+      next = RivalsOf(best, ranked, open->diagnosis->decision_input.families);
+      std::erase_if(next, [&](const PairToFit& one) { return one.lost > hopeless; });
+    }
+    std::erase_if(next, [&](const PairToFit& one) { return IsAmong(open->failed, one); });
+    if (next.empty()) break;
+    AddPair(next.front(), open);
+  }
+}
+
+std::vector<PairToFit> RivalsOf(const HypothesisProbability& pair, const RefittedRanking& ranked,
+                                const std::map<std::string, EffectFamily>& families) {
+  const auto first_order = [&](const std::string& type) {
+    for (const ScoredEffect& effect : ranked.along->effects)
+      if (effect.candidate.type == type) return effect.score.evidence;
+    return 0.0;
+  };
+  const auto alone = [&](const std::string& type) {
+    const std::optional<size_t> k = ranked.FindUsable(type);
+    return k ? ranked.effects[*k].evidence : 0.0;
+  };
+  std::vector<PairToFit> rivals;
+  for (const size_t at : {0u, 1u}) {
+    const std::string &replaced = pair.names[at], &kept = pair.names[1 - at];
+    const EffectFamily family = FamilyOf(families, replaced);
+    if (family == EffectFamily::kOther) continue;
+    for (const RankedEffect& other : ranked.effects) {
+      const std::string& type = other.scored.candidate.type;
+      if (pair.Contains(type) || FamilyOf(families, type) != family ||
+          IsFitted(ranked.pairs, kept, type) || (other.HasUsableRefit() && !other.predicts))
+        continue;
+      if (kept == ranked.along_type) {
+        if (first_order(type) >= kThresholds.refit.least_evidence)
+          rivals.push_back({kept, type, first_order(replaced) - first_order(type)});
+      } else if (other.HasUsableRefit()) {
+        rivals.push_back({type, kept, alone(replaced) - alone(type)});
+      }
+    }
+  }
+  std::stable_sort(rivals.begin(), rivals.end(),
+                   [](const PairToFit& a, const PairToFit& b) { return a.lost < b.lost; });
+  return rivals;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,93 @@
+#include "diagnosis/open_decision.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace lacuna {
+namespace {
+
+// An effect with a refit of this evidence.
+RankedEffect Refitted(const std::string& type, double evidence) {
+  RankedEffect effect;
+  effect.scored.candidate.type = type;
+  effect.refitted = true;
+  effect.evidence = evidence;
+  return effect;
+}
+
+RankedEffect NotRefitted(const std::string& type) {
+  RankedEffect effect;
+  effect.scored.candidate.type = type;
+  return effect;
+}
+
+ScoredEffect Scored(const std::string& type, double evidence) {
+  ScoredEffect effect;
+  effect.candidate.type = type;
+  effect.score.evidence = evidence;
+  return effect;
+}
+
+class Rivals : public testing::Test {
+ protected:
+  // Drag and a branch are most probable; everything was ranked along the motion with drag.
+  Rivals() {
+    pair_.kind = HypothesisProbability::Kind::kPair;
+    pair_.names = {"drag", "branch"};
+    families_ = {{"drag", EffectFamily::kLossOutside},
+                 {"mass_damping", EffectFamily::kLossOutside},
+                 {"slip", EffectFamily::kLossOutside},
+                 {"branch", EffectFamily::kLossInside},
+                 {"plastic", EffectFamily::kLossInside},
+                 {"damping", EffectFamily::kLossInside},
+                 {"gravity", EffectFamily::kSteadyForce},
+                 {"contact", EffectFamily::kOther},
+                 {"law", EffectFamily::kOther}};
+    ranked_.along_type = "drag";
+    EffectRanking along;
+    along.effects = {Scored("branch", 40), Scored("plastic", 25), Scored("gravity", 20),
+                     Scored("damping", 1)};
+    ranked_.along = std::make_shared<const EffectRanking>(along);
+    ranked_.effects = {Refitted("drag", 100),   Refitted("mass_damping", 95),
+                       NotRefitted("slip"),     NotRefitted("branch"),
+                       NotRefitted("plastic"),  NotRefitted("damping"),
+                       Refitted("gravity", 90), Refitted("contact", 80)};
+  }
+
+  // "first, further" of each rival.
+  std::vector<std::string> Names() const {
+    std::vector<std::string> names;
+    for (const PairToFit& rival : RivalsOf(pair_, ranked_, families_))
+      names.push_back(rival.first + ", " + rival.further);
+    return names;
+  }
+
+  HypothesisProbability pair_;
+  RefittedRanking ranked_;
+  std::map<std::string, EffectFamily> families_;
+};
+
+// Mass damping costs 5, plasticity 15; slip has no refit, and damping no evidence beside drag.
+TEST_F(Rivals, ReplaceOneEffectByAnotherOfItsFamily) {
+  EXPECT_EQ(Names(), (std::vector<std::string>{"mass_damping, branch", "drag, plastic"}));
+  EXPECT_EQ(RivalsOf(pair_, ranked_, families_)[1].lost, 15);
+}
+
+TEST_F(Rivals, AreNeitherRefutedNorFitted) {
+  ranked_.effects[1].predicts = false;
+  EXPECT_EQ(Names(), (std::vector<std::string>{"drag, plastic"}));
+  FittedPair fitted;
+  fitted.first = "drag";
+  fitted.second.scored.candidate.type = "plastic";
+  ranked_.pairs.push_back(fitted);
+  EXPECT_TRUE(Names().empty());
+}
+
+TEST_F(Rivals, DoNotReplaceAnEffectWithoutAFamily) {
+  pair_.names = {"drag", "contact"};
+  EXPECT_EQ(Names(), (std::vector<std::string>{"mass_damping, contact"}));
+}
+
+}  // namespace
+}  // namespace lacuna
