@@ -75,7 +75,10 @@ class HeaderReader {
         AddElement(words);
       } else if (key == "property") {
         AddProperty(words);
-      } else if (!words.empty() && key != "comment" && key != "obj_info") {
+      } else if (key == "obj_info") {
+        // PCL ends the program where this word is not the first of its line.
+        if (key.data() != content_.data() + line_begin_) Fail("has a blank before obj_info");
+      } else if (!words.empty() && key != "comment") {
         Fail(fmt::format("got \"{}\" in the header of a PLY file", key));
       }
     }
@@ -95,9 +98,9 @@ class HeaderReader {
     if (end == std::string_view::npos)
       throw InputError({file_.string()}, "is not a PLY file or ends within its header");
     ++line_;
-    const std::string_view line = content_.substr(at_, end - at_);
+    line_begin_ = at_;
     at_ = end + 1;
-    return WordsOf(line);
+    return WordsOf(content_.substr(line_begin_, end - line_begin_));
   }
 
   // Other readers split lines at more kinds of white space than this one, form feeds for example,
@@ -162,7 +165,7 @@ class HeaderReader {
 
   const std::filesystem::path& file_;
   const std::string_view content_;
-  size_t at_ = 0;
+  size_t at_ = 0, line_begin_ = 0;
   int line_ = 0;
   PlyHeader header_;
 };

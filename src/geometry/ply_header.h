@@ -41,9 +41,8 @@ struct PlyHeader {
 const PlyProperty* FindProperty(const PlyElement& element, std::string_view name);
 
 // `content`: the whole file. Throws InputError with the file and the line for a header that is
-// incomplete, holds an unknown word, has a name that is not
-// printable ASCII, announces the same element twice, or announces more values
-// than the file has bytes.
+// incomplete, holds an unknown word, has a name that is not printable ASCII, announces the same
+// element twice, or announces more values than the file has bytes.
 PlyHeader ReadPlyHeader(const std::filesystem::path& file, std::string_view content);
 
 // Throws InputError for a body that ends too early, for a list with a negative length, and for a
