@@ -3,8 +3,7 @@
 // 1. The posterior over {nothing, each effect, each nuisance} follows from the Bayes factors
 //    (decision_rules.h): of a refit where there is one, else to first order.
 // 2. Pairs are added: those that were fitted, and each refitted effect, or the most probable one,
-// with
-//    the best further effect beside it.
+//    with the best further effect beside it.
 // 3. The most probable hypothesis is tested against its own residual (adequacy.h). If it leaves
 //    more than noise, something unknown is left.
 // 4. What the hypotheses that reach kStatedProbability have in common is stated, else their set.

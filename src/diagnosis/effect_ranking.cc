@@ -413,6 +413,13 @@ HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixX
   return space;
 }
 
+const ScoredEffect* EffectRanking::Find(const std::string& type) const {
+  const auto found = std::find_if(effects.begin(), effects.end(), [&](const ScoredEffect& effect) {
+    return effect.candidate.type == type;
+  });
+  return found != effects.end() ? &*found : nullptr;
+}
+
 double EffectRanking::ModelError() const {
   double error = 0.5 * kToleratedModelError * explained_misfit;
   for (const ScoredNuisance& nuisance : nuisances) error += nuisance.uncertain_evidence;

@@ -55,6 +55,8 @@ struct EffectRanking {
   // Half of the squared length, in units of the noise, of the error that the model may have in any
   // direction (HypothesisSpace::model_error).
   double ModelError() const;
+  // The effect of this type; null: it was not ranked.
+  const ScoredEffect* Find(const std::string& type) const;
 };
 
 // The space of all hypotheses that a ranking has tried, beside the columns `base` (m, the rows of

@@ -140,9 +140,8 @@ void FitRivalPairs(OpenDecision* open) {
 std::vector<PairToFit> RivalsOf(const HypothesisProbability& pair, const RefittedRanking& ranked,
                                 const std::map<std::string, EffectFamily>& families) {
   const auto first_order = [&](const std::string& type) {
-    for (const ScoredEffect& effect : ranked.along->effects)
-      if (effect.candidate.type == type) return effect.score.evidence;
-    return 0.0;
+    const ScoredEffect* effect = ranked.along->Find(type);
+    return effect != nullptr ? effect->score.evidence : 0.0;
   };
   const auto alone = [&](const std::string& type) {
     const std::optional<size_t> k = ranked.FindUsable(type);

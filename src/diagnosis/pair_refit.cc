@@ -75,10 +75,8 @@ EffectRanking RankAlong(const BaselineModel& baseline, const ScoredVariant& effe
 std::optional<FittedPair> FitPair(const BaselineModel& baseline, const ScoredVariant& first,
                                   const EffectRefit& refit, const std::string& further,
                                   const EffectRanking& ranking, bool is_along_first) {
-  const auto scored =
-      std::find_if(ranking.effects.begin(), ranking.effects.end(),
-                   [&](const ScoredEffect& effect) { return effect.candidate.type == further; });
-  if (scored == ranking.effects.end()) return std::nullopt;
+  const ScoredEffect* scored = ranking.Find(further);
+  if (scored == nullptr) return std::nullopt;
   // One elasticity law would replace the other.
   if (first.candidate.replaces_material && scored->candidate.replaces_material) return std::nullopt;
   const PredictionStudy study = StudyWith(baseline, first);

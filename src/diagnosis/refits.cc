@@ -78,11 +78,22 @@ bool IsBeaten(const RefittedRanking& ranked, size_t effect) {
   return lead > DecisiveLead(ranked.best_evidence);
 }
 
-// `rivals`: number of effects from which this one was selected.
-void SetEvidence(const EffectRefit& with, const RefitEvidence& before, const NoiseLevel& noise,
-                 size_t rivals, RankedEffect* effect) {
-  const RefitEvidence after = EvidenceOf(with, noise);
-  effect->evidence = after.all - before.all - SelectionPenalty(rivals);
+// What a refit with an effect is compared with.
+struct Comparison {
+  const CalibrationProblem& problem;
+  const EffectRefit& without;  // the effect, beside the same nuisances
+  NoiseLevel noise;
+  size_t rivals;  // number of effects from which the effect was selected
+  RefitEvidence before = EvidenceOf(without, noise);
+};
+
+// Sets what the comparison says about the refit of an effect.
+void SetEvidence(const EffectRefit& with, const Comparison& comparison, RankedEffect* effect) {
+  const RefitEvidence& before = comparison.before;
+  const RefitEvidence after = EvidenceOf(with, comparison.noise);
+  effect->predicts = Predicts(with, comparison.without, comparison.noise);
+  effect->removed.reset();
+  effect->evidence = after.all - before.all - SelectionPenalty(comparison.rivals);
   effect->held_out_evidence = after.held_out - before.held_out;
   if (!std::isfinite(effect->evidence)) {
     effect->evidence = 0;
@@ -90,6 +101,8 @@ void SetEvidence(const EffectRefit& with, const RefitEvidence& before, const Noi
     return;
   }
   effect->explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
+  effect->removed = RemovedMisfit(comparison.without.hypothesis, with.hypothesis, comparison.noise,
+                                  comparison.problem);
   effect->rms_over_sigma = RmsOverSigma(with.hypothesis);
 }
 
@@ -309,18 +322,10 @@ RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {
   const RefitNoise noise{LevelOf(best.residual, best.misfit, best.misfit.jacobian.cols(),
                                  context.model.problem.LeastNoiseVariance()),
                          RmsOverSigma(best)};
-  const RefitEvidence before = EvidenceOf(ranked->baseline, noise.level);
-  const size_t rivals = ranked->effects.size();
-  for (size_t k = 0; k < rivals; ++k) {
-    if (!ranked->IsUsable(k)) continue;
-    ranked->effects[k].removed.reset();
-    ranked->effects[k].predicts = Predicts(ranked->refits[k], ranked->baseline, noise.level);
-    SetEvidence(ranked->refits[k], before, noise.level, rivals, &ranked->effects[k]);
-    if (ranked->IsUsable(k))
-      ranked->effects[k].removed =
-          RemovedMisfit(ranked->baseline.hypothesis, ranked->refits[k].hypothesis, noise.level,
-                        context.model.problem);
-  }
+  const Comparison comparison{context.model.problem, ranked->baseline, noise.level,
+                              ranked->effects.size()};
+  for (size_t k = 0; k < ranked->effects.size(); ++k)
+    if (ranked->IsUsable(k)) SetEvidence(ranked->refits[k], comparison, &ranked->effects[k]);
   return noise;
 }
 
@@ -381,9 +386,9 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
   const EffectRefit bare = Refit(context.model, nullptr, always, false);
   if (!bare.message.empty()) return alternatives;
   alternatives.bare = bare.errors;
-  const RefitEvidence before = EvidenceOf(bare, noise.level);
+  const Comparison comparison{context.model.problem, bare, noise.level, ranked.effects.size()};
   alternatives.nuisances_evidence =
-      EvidenceOf(ranked.baseline.hypothesis, noise.level).log_evidence - before.all;
+      EvidenceOf(ranked.baseline.hypothesis, noise.level).log_evidence - comparison.before.all;
   // The effects in their place pay for their selection, too.
   for (const ScoredNuisance& nuisance : ranking.nuisances)
     if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model)
@@ -399,11 +404,7 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
     const EffectRefit with = RefitEffect(context, always, bare, /*is_found=*/false, &effect);
     HypothesisSpace& space = alternatives.spaces.emplace_back();
     if (!with.message.empty()) continue;
-    effect.predicts = Predicts(with, bare, noise.level);
-    SetEvidence(with, before, noise.level, ranked.effects.size(), &effect);
-    if (effect.HasUsableRefit())
-      effect.removed =
-          RemovedMisfit(bare.hypothesis, with.hypothesis, noise.level, context.model.problem);
+    SetEvidence(with, comparison, &effect);
     space =
         SpaceBeside(with.hypothesis.misfit, with.hypothesis.misfit.jacobian, with.hypothesis.priors,
                     ranking, {effect.scored.candidate.type}, noise.level,

@@ -55,10 +55,11 @@ function candidates(diagnosis) {
 
 // From which kinds of data each refitted effect removes squared misfit; only where there are several.
 function removedMisfit(diagnosis) {
+  const kinds = ['markers', 'scans', 'forces'];
   const rows = (diagnosis.ranking ?? []).filter((effect) => isUsable(effect) && effect.refit.removed_misfit)
-    .map((effect) => [h('code', {}, name(effect.effect)), ...['markers', 'scans', 'forces'].map((kind) => fixed(effect.refit.removed_misfit[kind], 1))]);
+    .map((effect) => [h('code', {}, name(effect.effect)), ...kinds.map((kind) => fixed(effect.refit.removed_misfit[kind], 1))]);
   return table('Squared misfit that each refitted effect removes from each kind of data, in σ². A negative number is misfit that it adds.',
-    [['effect'], ['markers', true], ['scans', true], ['forces', true]], rows);
+    [['effect'], ...kinds.map((kind) => [kind, true])], rows);
 }
 
 function experiments(diagnosis, shown) {
