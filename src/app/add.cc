@@ -40,11 +40,12 @@ void RequireAddable(const std::string& type, const PredictionStudy& study) {
                   [&](const auto& effect) { return effect->Card().type == type; });
   if (is_there && !entry->card->repeatable)
     throw InputError(fmt::format("{}: the model already has this effect", type));
-  if (entry->make == nullptr)
+  if (entry->is_own_law)
     throw InputError(fmt::format(
         "{} stands for any user-defined law: write the law into the experiment's `candidates`, and "
         "add it by its name (docs/expression.md)",
         type));
+  if (entry->make == nullptr) Refuse(type, "a part of it is an expression, which you choose");
 }
 
 const ScoredEffect& FindScored(const EffectRanking& ranking, const std::string& type) {

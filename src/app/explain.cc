@@ -139,7 +139,9 @@ std::string Invariances(const EffectCard& card) {
 std::string TriedAtText(const CatalogueEntry& entry) {
   if (entry.kind == CatalogueEntry::Kind::kMaterial)
     return "Tried in place of the elasticity law of the model, with the same moduli.";
-  if (entry.make == nullptr) return "Tried if the experiment lists the law among its candidates.";
+  if (entry.is_own_law) return "Tried if the experiment lists the law among its candidates.";
+  if (entry.make == nullptr)
+    return "Not tried, because a part of it is an expression, which you choose.";
   struct Text {
     std::string operator()(const TriedOnce&) const { return "Tried once."; }
     std::string operator()(const TriedAtPlaces& places) const {

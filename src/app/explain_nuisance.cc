@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/text_layout.h"
+#include "diagnosis/thresholds.h"
 
 namespace lacuna {
 namespace {
@@ -30,6 +31,11 @@ std::string InADiagnosis(const NuisanceCard& card) {
                            "otherwise it competes with the effects as an explanation.";
   if (card.acts_on_single_frames)
     text += " It differs from frame to frame, so it predicts nothing for held-out frames.";
+  if (card.needs_few_frames)
+    text += fmt::format(
+        " It is left out of recordings with more than {} frames, which the diagnosis says; `every` "
+        "thins out the frames.",
+        kThresholds.nuisances.most_single_frames);
   if (card.outgrows_first_order)
     text +=
         " A first-order prediction underestimates it, so less evidence suffices for it to count.";

@@ -41,7 +41,7 @@ void PrintDifference(const char* what, const DisplacementDifference& difference)
              1e3 * difference.largest_displacement);
 }
 
-// Returns the exit status.
+// Runs CalculiX and predicts the motion. Returns the exit status.
 int Verify(const DescribedRun& run, const std::filesystem::path& output) {
   const PortableModel& model = run.model;
   const CalculixResult result =
@@ -55,7 +55,7 @@ int Verify(const DescribedRun& run, const std::filesystem::path& output) {
     return 1;
   }
   const Eigen::MatrixXd expected =
-      run.positions.colwise() - Eigen::VectorXd(model.mesh.nodes.reshaped());
+      PredictPositions(run).colwise() - Eigen::VectorXd(model.mesh.nodes.reshaped());
   fmt::print("Displacements of all {} nodes, CalculiX against Lacuna:\n", model.mesh.NodeCount());
   PrintDifference("equilibrium",
                   CompareDisplacements(expected.leftCols(1), result.displacement.leftCols(1)));
@@ -66,11 +66,10 @@ int Verify(const DescribedRun& run, const std::filesystem::path& output) {
   return 0;
 }
 
-int Export(ExportArguments arguments) {
+int Export(const ExportArguments& arguments) {
   const ExportFormat& format = FindExportFormat(arguments.format);
   if (arguments.verify && !IsVerifiable(format))
     throw InputError("--verify runs CalculiX and belongs to --to inp and --to inp_lumped");
-  arguments.described.with_positions = arguments.verify && HasCalculix();
   const DescribedRun run = DescribeRun(arguments.run, arguments.described);
   const Counterparts counterparts = format.counterparts(run.model);
   if (!arguments.allow_missing) RefuseMissing(counterparts, format);

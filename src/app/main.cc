@@ -1,27 +1,21 @@
-// lacuna: the command line, and the exit status of each kind of failure. Each command has a file of
-// its own.
+// lacuna: the command line. Each command has a file of its own.
 #include <fmt/format.h>
 #include <glog/logging.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <functional>
-#include <new>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "app/command_documents.h"
 #include "app/commands.h"
+#include "app/program.h"
 #include "core/blas_kernels.h"
-#include "core/error.h"
 #include "core/interrupt.h"
 #include "core/logging.h"
-#include "core/memory_limit.h"
 #include "core/parallel.h"
-#include "core/progress.h"
 #include "core/suggestion.h"
 #include "record/library_versions.h"
 
@@ -44,19 +38,11 @@ constexpr char kFooter[] = R"(Start here:
 Exit status: 0 done; 1 a result is not usable (the record says why); 2 unusable input;
 130 stopped by Ctrl-C (run the same command again to resume).)";
 
-constexpr int kUnusableInput = 2;
-
 std::string UnknownCommand(const CLI::App& app, const std::string& given) {
   std::vector<std::string> known;
   for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
   return fmt::format("there is no command \"{}\"{}; lacuna --help lists them", given,
                      lacuna::Suggestion(given, known));
-}
-
-// Prints a message. Where nothing can be printed any more, on a full disk for instance, the exit
-// status still says that the command has failed; fmt::print would throw.
-void Say(std::string_view message) {
-  lacuna::WriteLineToStandardError(fmt::format("lacuna: {}", message));
 }
 
 }  // namespace
@@ -73,15 +59,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", lacuna::ProgramVersion());
   app.allow_extras();  // reported below, with a suggestion
   int threads = 0;
-  uint64_t memory_limit = 0;
   lacuna::OutputOptions output;
   app.add_option("--threads", threads, "Threads to use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
-  app.add_option("--memory-limit", memory_limit,
-                 "Refuse to begin what needs more memory than this, for example 4GB; for each "
-                 "process; default: the machine's memory")
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
-      ->check(CLI::Range(uint64_t{1'000'000}, uint64_t{1'000'000'000'000'000}));
+  lacuna::AddMemoryLimitOption(&app);
   app.add_flag("-v,--verbose", output.verbose, "Log the progress of the stages in detail");
 
   std::function<int()> command;
@@ -104,11 +85,7 @@ int main(int argc, char** argv) {
   lacuna::AddExport(&app, &command);
   lacuna::AddImport(&app, &command);
   lacuna::AddDocumentOption(&app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& problem) {
-    return app.exit(problem) == 0 ? 0 : kUnusableInput;
-  }
+  if (const std::optional<int> ended = lacuna::ParseCommandLine(&app, argc, argv)) return *ended;
   if (!app.remaining(true).empty()) {
     const std::string unexpected = app.remaining(true).front();
     fmt::print(stderr, "lacuna: {}\n",
@@ -116,29 +93,13 @@ int main(int argc, char** argv) {
                    ? fmt::format("unexpected argument \"{}\"; --help lists those that are known",
                                  unexpected)
                    : UnknownCommand(app, unexpected));
-    return kUnusableInput;
+    return lacuna::kUnusableInput;
   }
   if (!command) {
     fmt::print("{}", app.help());
-    return kUnusableInput;
+    return lacuna::kUnusableInput;
   }
   if (threads > 0) lacuna::SetThreadCount(threads);
-  if (memory_limit > 0) lacuna::SetMemoryLimit(memory_limit);
   if (output.verbose) lacuna::SetLogLevel(lacuna::LogLevel::kInfo);
-
-  try {
-    return command();
-  } catch (const lacuna::InputError& problem) {
-    Say(problem.what());
-    return kUnusableInput;
-  } catch (const lacuna::Interrupted& interrupted) {
-    Say(lacuna::kStoppedMessage);
-    return interrupted.ExitCode();
-  } catch (const std::bad_alloc&) {
-    Say("there is not enough memory");
-    return kUnusableInput;
-  } catch (const std::exception& problem) {
-    Say(problem.what());
-    return kUnusableInput;
-  }
+  return lacuna::ExitStatusOf("lacuna", command);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 #include <set>
+#include <system_error>
 
 #include "app/commands.h"
 #include "core/atomic_file.h"
@@ -17,6 +18,7 @@
 #include "prediction/prediction_study_reader.h"
 #include "record/csv_table.h"
 #include "report/vtk_files.h"
+#include "scan/recording_writer.h"
 
 namespace lacuna {
 namespace {
@@ -105,6 +107,27 @@ std::filesystem::path OutputFolder(const Arguments& arguments, const std::string
   return arguments.output.empty() ? "results/" + name + "_simulation" : arguments.output;
 }
 
+// Throws InputError where the recording would replace one that nobody has simulated.
+void RefuseMeasuredRecording(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder / "recording.yaml") || IsSimulatedRecording(folder)) return;
+  throw InputError({(folder / "recording.yaml").string()},
+                   "was not written by a simulation and would be replaced; choose another folder "
+                   "for --recording");
+}
+
+// Throws InputError where the recording would be written among files that the experiment reads.
+void RefuseFolderOfInputs(const std::filesystem::path& folder, const PredictionStudy& study) {
+  std::error_code absent;  // a folder that does not exist is none of theirs
+  for (const PredictedRecording& item : study.recordings)
+    for (const FileState& input : item.recording.files)
+      if (std::filesystem::equivalent(folder, std::filesystem::absolute(input.file).parent_path(),
+                                      absent))
+        throw InputError({folder.string()},
+                         fmt::format("contains {}, which the experiment reads; choose another "
+                                     "folder for --recording",
+                                     input.file.filename().string()));
+}
+
 // Plays the recordings of an experiment with its model, each into a folder of its own where there
 // are several.
 int PlayExperiment(const Arguments& arguments, const Config& config) {
@@ -123,29 +146,35 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
                                    item.name, FileNameFor(item.name)));
   }
   const bool several = study.recordings.size() > 1;
+  const auto own_folder = [&](const std::filesystem::path& folder, const std::string& name) {
+    return several ? folder / FileNameFor(name) : folder;
+  };
+  for (const PredictedRecording& item : study.recordings) {
+    if (arguments.recording.empty()) break;
+    const std::filesystem::path folder = own_folder(arguments.recording, item.name);
+    RefuseFolderOfInputs(folder, study);
+    RefuseMeasuredRecording(folder);
+  }
   const TetMesh mesh = MakeReferenceBody(study).mesh;
   const auto body = std::make_shared<const Body>(MakeBody(mesh, study.density));
-  const auto place = [&](const std::filesystem::path& folder, const std::string& name) {
-    const std::filesystem::path own = several ? folder / FileNameFor(name) : folder;
-    MakeFolder(own);
-    return own;
-  };
   for (size_t r = 0; r < study.recordings.size(); ++r) {
     const PredictedRecording& item = study.recordings[r];
     const RecordingModel model(study, item, mesh, body, {});
     const PlayedRecording played = Play(model, PlayedNuisances(model));
     if (!played.summary.IsUsable())
       return SayEnded(arguments, item.name + ": " + played.summary.message);
-    const std::filesystem::path folder = place(OutputFolder(arguments, study.name), item.name);
+    const std::filesystem::path folder = own_folder(OutputFolder(arguments, study.name), item.name);
+    MakeFolder(folder);
     const Trajectory trajectory{body->mesh, played.times, played.positions, played.velocities};
     WriteTrajectory(trajectory, folder);
     SayMotion(item.name, mesh, trajectory, folder);
     if (arguments.recording.empty()) continue;
-    const std::filesystem::path written = place(arguments.recording, item.name);
+    const std::filesystem::path written = own_folder(arguments.recording, item.name);
+    MakeFolder(written);
     WriteTetMesh(written / "object.msh", mesh);
     MarkerRecording recording = AsRecording(item, played, study.noise, r + 1);
     recording.reference = written / "object.msh";
-    recording.comment = fmt::format("Simulated from {}.", study.file.filename().string());
+    recording.comment = fmt::format("{} from {}.", kSimulated, study.file.filename().string());
     WriteMarkerRecording(written, recording);
     fmt::print("The recording was written to {}\n", written.string());
   }
@@ -159,6 +188,7 @@ int Simulate(const Arguments& arguments) {
   if (!arguments.recording.empty() && !scene.scanner)
     throw InputError(SourcePosition{arguments.scene}, "has no `scanner`, which --recording needs");
   const std::filesystem::path output = OutputFolder(arguments, scene.name);
+  if (!arguments.recording.empty()) RefuseMeasuredRecording(arguments.recording);
   MakeFolder(output);
   if (!arguments.recording.empty()) MakeFolder(arguments.recording);
   Progress progress;

@@ -8,6 +8,7 @@
 
 #include "app/commands.h"
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "sweep/slurm.h"
 #include "sweep/sweep_plan.h"
@@ -50,6 +51,7 @@ int Submit(const Arguments& arguments) {
   }
   options.at_a_time = arguments.workers;
   options.retry_failed = arguments.retry_failed;
+  options.memory_limit = GivenMemoryLimit();
   options.wait = arguments.wait;
   options.options = arguments.sbatch;
   const std::string job = SubmitToSlurm(arguments.folder, options);

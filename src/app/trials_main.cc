@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <optional>
 
 #include "app/command_documents.h"
+#include "app/program.h"
 #include "core/blas_kernels.h"
-#include "core/error.h"
 #include "core/interrupt.h"
 #include "core/logging.h"
-#include "core/progress.h"
 #include "trials/follow_up.h"
 #include "trials/interval_trials.h"
 #include "trials/trial_report.h"
@@ -19,11 +19,10 @@
 namespace lacuna {
 namespace {
 
-int Report(const std::filesystem::path& folder) {
+void Report(const std::filesystem::path& folder) {
   const TrialReport report = ReportTrials(folder);
   SaveTrialReport(report, folder);
   fmt::print("{}", ReportInWords(report));
-  return 0;
 }
 
 void Redecide(const std::filesystem::path& folder) {
@@ -51,7 +50,11 @@ int Main(int argc, char** argv) {
   CLI::App app(
       "Sealed cases test the diagnosis on recordings simulated with an effect that the model "
       "lacks");
+  app.footer(
+      "Exit status: 0 done; 1 the process of a case has failed; 2 unusable input;\n"
+      "130 stopped by Ctrl-C (run the same command again to resume).");
   app.require_subcommand(1);
+  AddMemoryLimitOption(&app);
   std::string suite, folder;
   int workers = 2;
   CLI::App* make = app.add_subcommand("make", "Make the cases of a suite");
@@ -81,21 +84,18 @@ int Main(int argc, char** argv) {
   intervals->add_option("--workers", workers, "Number of processes that run at the same time")
       ->check(CLI::Range(1, 64));
   AddDocumentOption(&app);
-  CLI11_PARSE(app, argc, argv);
-  try {
-    if (make->parsed()) return MakeTrials(ReadTrialSuite(Config::Load(suite)), folder, workers);
-    if (run->parsed()) return RunTrials(folder, workers);
-    if (follow->parsed()) return RunFollowUps(folder, workers);
-    if (intervals->parsed()) return Intervals(suite, folder, workers);
+  if (const std::optional<int> ended = ParseCommandLine(&app, argc, argv)) return *ended;
+  return ExitStatusOf("lacuna-trials", [&] {
+    int status = 0;
+    if (make->parsed()) status = MakeTrials(ReadTrialSuite(Config::Load(suite)), folder, workers);
+    if (run->parsed()) status = RunTrials(folder, workers);
+    if (follow->parsed()) status = RunFollowUps(folder, workers);
+    if (intervals->parsed()) status = Intervals(suite, folder, workers);
+    ThrowIfInterrupted();  // the cases that were running have stopped, and others were not begun
     if (redecide->parsed()) Redecide(folder);
-    return Report(folder);
-  } catch (const InputError& problem) {
-    WriteLineToStandardError(problem.what());
-  } catch (const Interrupted& interrupted) {
-    WriteLineToStandardError(kStoppedMessage);
-    return interrupted.ExitCode();
-  }
-  return 1;
+    if (redecide->parsed() || report->parsed()) Report(folder);
+    return status;
+  });
 }
 
 }  // namespace

@@ -27,15 +27,17 @@ std::string ActionOf(const DescribedOption& option) {
 }
 
 std::string OptionSpecs(const DescribedOption& option) {
+  // One that may be repeated ("*") must not exclude itself by the list in front.
+  const std::string before =
+      option.repeated ? "*" : fmt::format("({})", fmt::join(option.names, " "));
   std::string specs;
   for (const std::string& name : option.names) {
     // "=" after a long option: its value may be a word of its own or follow "=".
     const bool is_long = name.starts_with("--");
     const std::string value =
         option.value.empty() ? "" : fmt::format(":{}:{}", ZshText(option.value), ActionOf(option));
-    specs += fmt::format(" \\\n    '({}){}{}{}[{}]{}'", fmt::join(option.names, " "),
-                         option.repeated ? "*" : "", name, !value.empty() && is_long ? "=" : "",
-                         ZshText(option.description), value);
+    specs += fmt::format(" \\\n    '{}{}{}[{}]{}'", before, name,
+                         !value.empty() && is_long ? "=" : "", ZshText(option.description), value);
   }
   return specs;
 }

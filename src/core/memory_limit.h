@@ -8,6 +8,7 @@
 #define LACUNA_CORE_MEMORY_LIMIT_H_
 
 #include <cstdint>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 
@@ -23,15 +24,35 @@ class OutOfMemory : public std::runtime_error {
 // Sets the limit of this process and of those that it forks, bytes.
 void SetMemoryLimit(uint64_t bytes);
 
-// The limit, bytes: by default the machine's memory.
-uint64_t MemoryLimit();
+// The limit that was set, bytes; 0 if none was.
+uint64_t GivenMemoryLimit();
+
+// A limit, and where it comes from.
+struct MemoryBound {
+  uint64_t bytes = 0;
+  std::string origin;  // in words that follow "the limit of 4.0 GB, "
+};
+
+// The limit that was set or, if none was, DefaultMemoryLimit of this machine and process, which is
+// determined once.
+MemoryBound MemoryLimit();
+
+// The lowest of the machine's memory (bytes) and the limits of the control group (cgroups(7)) that
+// the process belongs to and of all groups that contain it. Containers, units of systemd and jobs
+// of batch systems run in such groups, and the kernel kills what exceeds their limits. `membership`
+// is a file like /proc/self/cgroup, and `hierarchy` a folder like /sys/fs/cgroup. The limits are
+//   <hierarchy>/<group>/memory.max                      of version 2, and
+//   <hierarchy>/memory/<group>/memory.limit_in_bytes    of version 1.
+// A file that cannot be read, or that contains no number (for example "max"), sets no limit.
+MemoryBound DefaultMemoryLimit(uint64_t machine, const std::filesystem::path& membership,
+                               const std::filesystem::path& hierarchy);
 
 // What the process occupies now, bytes.
 uint64_t MemoryInUse();
 
 // Throws OutOfMemory where `bytes` more than what is in use exceed the limit: "<what> needs 5.2 GB
-// beside the 400 MB in use, more than the limit of 4.0 GB; <advice>". `advice` says what would need
-// less.
+// beside the 400 MB in use, more than the limit of 4.0 GB, set with --memory-limit; <advice>".
+// `advice` says what would need less.
 void RequireMemory(double bytes, const std::string& what, const std::string& advice);
 
 // Throws OutOfMemory where more is in use than a limit that was set. For loops whose turns take a

@@ -122,7 +122,8 @@ void DefineDiagnosis(py::module_* module) {
       .def_readonly("names", &HypothesisProbability::names)
       .def_readonly("probability", &HypothesisProbability::probability)
       .def_readonly("evidence", &HypothesisProbability::evidence,
-                    "log Bayes factor against the model as it is")
+                    "log Bayes factor against the model as it is, less the logarithm of the number "
+                    "of effects (or nuisances) that were tried")
       .def("__repr__", [](const HypothesisProbability& h) {
         return fmt::format("<{} {}: {:.3f}>", HypothesisKindName(h.kind), fmt::join(h.names, " + "),
                            h.probability);

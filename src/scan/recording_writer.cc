@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "core/atomic_file.h"
 #include "core/quoted_text.h"
@@ -23,6 +24,12 @@ std::string AsComment(const std::string& text) {
 }
 
 }  // namespace
+
+bool IsSimulatedRecording(const std::filesystem::path& folder) {
+  std::ifstream stream(folder / "recording.yaml");
+  std::string line;
+  return std::getline(stream, line) && line.starts_with(std::string("# ") + kSimulated);
+}
 
 std::string WriteDensityAndGravity(const RecordedObject& object) {
   std::string yaml;

@@ -17,6 +17,12 @@ namespace lacuna {
 std::string WriteDensityAndGravity(const RecordedObject& object);
 std::string WriteConstraints(const std::filesystem::path& folder, const RecordedObject& object);
 
+// The first word of recording.yaml, in a comment, where a simulation has written the recording.
+inline constexpr char kSimulated[] = "Simulated";
+// Whether `folder` contains a recording.yaml that begins with this word in a comment. It holds no
+// measurement, and may be replaced by another simulation.
+bool IsSimulatedRecording(const std::filesystem::path& folder);
+
 // A recording of markers that were simulated.
 struct MarkerRecording {
   std::string name;

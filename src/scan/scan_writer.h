@@ -20,8 +20,9 @@ using FrameWriter = std::string (*)(const std::filesystem::path& folder, const V
 
 // Writes `folder`: recording.yaml, the frames that `write_frames` makes of the scan, and truth/
 // with the exact surfaces, which recording.yaml does not mention. Grips of `object` follow the scan
-// or a given path. recording.yaml is written last, so that an unfinished folder is not a recording.
-// Throws InputError when the folder cannot be written and when `write_frames` does.
+// or a given path. recording.yaml is marked as simulated (recording_writer.h). It is written last,
+// so that an unfinished folder is not a recording. Throws InputError when the folder cannot be
+// written and when `write_frames` does.
 void WriteScan(const std::filesystem::path& folder, const std::string& name,
                const RecordedObject& object, const VirtualScan& scan, FrameWriter write_frames);
 

@@ -39,14 +39,17 @@ std::string ArrayOf(const std::vector<int>& numbers) {
 std::string SlurmScript(const fs::path& folder, const SlurmOptions& options) {
   const std::string most =
       options.at_a_time > 0 ? fmt::format("%{}", options.at_a_time) : std::string();
+  const std::string limit = options.memory_limit > 0
+                                ? fmt::format(" --memory-limit {}", options.memory_limit)
+                                : std::string();
   return fmt::format(
       "#!/bin/sh\n"
       "#SBATCH --array={}{}\n"
       "#SBATCH --output=slurm/%A_%a.txt\n"
-      "exec {} --threads \"${{SLURM_CPUS_PER_TASK:-1}}\" sweep run {} --case "
+      "exec {} --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"{} sweep run {} --case "
       "\"$SLURM_ARRAY_TASK_ID\"{}\n",
-      ArrayOf(options.numbers), most, Quoted(options.program.string()), Quoted(folder.string()),
-      options.retry_failed ? " --retry-failed" : "");
+      ArrayOf(options.numbers), most, Quoted(options.program.string()), limit,
+      Quoted(folder.string()), options.retry_failed ? " --retry-failed" : "");
 }
 
 std::string SubmitToSlurm(const fs::path& given_folder, const SlurmOptions& options) {

@@ -2,6 +2,7 @@
 #ifndef LACUNA_SWEEP_SLURM_H_
 #define LACUNA_SWEEP_SLURM_H_
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@ struct SlurmOptions {
   std::vector<int> numbers;          // numbers of the cases to run, ascending; one task each
   int at_a_time = 0;                 // tasks that may run at once; 0 for Slurm's own limit
   bool retry_failed = false;         // passed on to the tasks
+  uint64_t memory_limit = 0;         // bytes, passed on to the tasks; 0 for the nodes' own limits
   bool wait = false;                 // return only after all tasks have ended
   std::vector<std::string> options;  // further options of sbatch: "--partition=short"
 };

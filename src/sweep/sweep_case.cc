@@ -49,7 +49,8 @@ std::string Describe(const SweepCase& entry) {
   for (size_t k = 0; k < entry.changes.size(); ++k)
     text += fmt::format("{} {} = {}", k == 0 ? " with" : ",", entry.changes[k].field,
                         entry.changes[k].value);
-  std::replace(text.begin(), text.end(), '\n', ' ');
+  for (char& letter : text)
+    if (letter == '\n' || letter == '\r') letter = ' ';
   return text;
 }
 

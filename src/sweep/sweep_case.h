@@ -32,7 +32,7 @@ struct SweepCase {
   std::vector<CaseChange> changes;
   SweepSettings settings;
 };
-// The case in words: "bend.yaml with mesh.max_volume = 150 mm^3".
+// The case in words, on one line: "bend.yaml with mesh.max_volume = 150 mm^3".
 std::string Describe(const SweepCase& entry);
 
 struct SweepIdentity {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/changed_yaml.h"
@@ -94,6 +95,7 @@ std::string MessageAbout(const std::string& field, const std::string& message) {
   throw InputError({sweep_file.File().string()}, Describe(entry) + ": " + message);
 }
 
+// A folder that does not exist yet is accepted.
 void RefuseForeignFolder(const fs::path& folder, const SweepIdentity& identity) {
   if (fs::exists(folder / "sweep.json")) {
     const SweepIdentity known = LoadIdentity(folder);
@@ -103,9 +105,66 @@ void RefuseForeignFolder(const fs::path& folder, const SweepIdentity& identity) 
           fmt::format("contains a sweep of `{}`; choose another folder", NameOf(known.command)));
     return;
   }
+  if (!fs::is_directory(folder)) return;
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.path().filename() != kLockName && !IsTemporaryFile(entry.path()))
       throw InputError({folder.string()}, "is neither empty nor a sweep; choose another folder");
+}
+
+std::vector<SweepCase> PlannedCases(const fs::path& folder) {
+  return fs::is_directory(folder) ? LoadCases(folder) : std::vector<SweepCase>();
+}
+
+// The cases that a sweep file adds to those of a folder, with their files.
+struct Additions {
+  std::vector<SweepCase> before;  // the cases that the folder has, by number
+  std::vector<std::pair<SweepCase, CaseFiles>> added;
+  std::vector<std::string> absent;  // see SweepPlan
+};
+
+// Reads and checks everything, and writes nothing.
+Additions CheckedAdditions(const Config& sweep_file, const SweepFile& file,
+                           const fs::path& folder) {
+  const SweepCommand command = file.identity.command;
+  RefuseForeignFolder(folder, file.identity);
+  Additions additions;
+  additions.before = PlannedCases(folder);
+  std::map<std::string, SweepCase> known;  // by hash
+  int number = 0;
+  for (const SweepCase& entry : additions.before) {
+    known[HashOf(entry, command)] = entry;
+    number = std::max(number, entry.number);
+  }
+  std::set<std::string> wanted;
+  for (const RequestedCase& request : file.cases) {
+    SweepCase entry{0, "", request.experiment, {}, file.settings};
+    for (const RequestedChange& change : request.changes) entry.changes.push_back(change.change);
+    const std::string hash = HashOf(entry, command);
+    const auto before = known.find(hash);
+    wanted.insert(hash);
+    entry.number = before == known.end() ? ++number : before->second.number;
+    entry.name = fmt::format("{:04}-{}", entry.number, hash.substr(0, 8));
+    try {
+      const CaseFiles files =
+          Compose(command, entry, request, sweep_file.File(), folder / entry.name);
+      if (before == known.end()) {
+        CheckCase(command, files, folder / entry.name);
+        additions.added.emplace_back(entry, files);
+        continue;
+      }
+      for (const auto& [name, text] : files)
+        if (ReadWholeFile(folder / entry.name / name) != text)
+          throw InputError(
+              fmt::format("differs from {}, which was planned before; plan into another folder",
+                          (folder / entry.name / name).string()));
+    } catch (const InputError& problem) {
+      Refuse(request, entry, sweep_file, problem.what());
+    }
+  }
+  for (const auto& [hash, entry] : known)
+    if (!wanted.contains(hash)) additions.absent.push_back(entry.name);
+  std::sort(additions.absent.begin(), additions.absent.end());
+  return additions;
 }
 
 fs::path PartialFolder(const fs::path& folder, const SweepCase& entry) {
@@ -128,61 +187,25 @@ void WriteCase(const SweepCase& entry, const CaseFiles& files, const fs::path& f
 
 SweepPlan PlanSweep(const Config& sweep_file, const fs::path& given_folder) {
   const SweepFile file = ReadSweepFile(sweep_file);
-  const SweepCommand command = file.identity.command;
-  MakeFolder(given_folder);
   // Paths in the cases are relative and must not pass through a symbolic link.
-  const fs::path folder = fs::canonical(given_folder);
-  RefuseForeignFolder(folder, file.identity);
+  const fs::path folder = fs::weakly_canonical(fs::absolute(given_folder));
+  Additions additions = CheckedAdditions(sweep_file, file, folder);
+  MakeFolder(folder);
   const Claim claim(folder / kLockName);
   if (!claim.holds()) throw InputError({folder.string()}, "is being planned by another process");
   RemoveLeftTemporaries(folder);
-
-  SweepPlan plan;
-  std::map<std::string, SweepCase> known;  // by hash
-  int number = 0;
-  for (const SweepCase& entry : LoadCases(folder)) {
-    known[HashOf(entry, command)] = entry;
-    number = std::max(number, entry.number);
-    plan.cases.push_back(entry);
-  }
-  std::set<std::string> wanted;
-  std::vector<std::pair<SweepCase, CaseFiles>> added;
-  for (const RequestedCase& request : file.cases) {
-    SweepCase entry{0, "", request.experiment, {}, file.settings};
-    for (const RequestedChange& change : request.changes) entry.changes.push_back(change.change);
-    const std::string hash = HashOf(entry, command);
-    const auto before = known.find(hash);
-    wanted.insert(hash);
-    entry.number = before == known.end() ? ++number : before->second.number;
-    entry.name = fmt::format("{:04}-{}", entry.number, hash.substr(0, 8));
-    try {
-      const CaseFiles files =
-          Compose(command, entry, request, sweep_file.File(), folder / entry.name);
-      if (before == known.end()) {
-        CheckCase(command, files, folder / entry.name);
-        added.emplace_back(entry, files);
-        continue;
-      }
-      for (const auto& [name, text] : files)
-        if (ReadWholeFile(folder / entry.name / name) != text)
-          throw InputError(
-              fmt::format("differs from {}, which was planned before; plan into another folder",
-                          (folder / entry.name / name).string()));
-    } catch (const InputError& problem) {
-      Refuse(request, entry, sweep_file, problem.what());
-    }
-  }
-  for (const auto& [hash, entry] : known)
-    if (!wanted.contains(hash)) plan.absent.push_back(entry.name);
-  std::sort(plan.absent.begin(), plan.absent.end());
+  // Another process may have added cases before the folder was locked.
+  if (PlannedCases(folder).size() != additions.before.size())
+    additions = CheckedAdditions(sweep_file, file, folder);
 
   if (!fs::exists(folder / "sweep.json")) SaveIdentity(file.identity, folder);
-  for (const auto& [entry, files] : added) {
+  SweepPlan plan{std::move(additions.before), static_cast<int>(additions.added.size()),
+                 std::move(additions.absent)};
+  for (const auto& [entry, files] : additions.added) {
     WriteCase(entry, files, folder);
     plan.cases.push_back(entry);
   }
   SyncFolder(folder);
-  plan.added = static_cast<int>(added.size());
   WriteFileAtomically(folder / "cases.csv", CasesAsCsv(plan.cases));
   return plan;
 }

@@ -10,11 +10,13 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <new>
 
 #include "core/atomic_file.h"
 #include "core/claim.h"
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/memory_limit.h"
 #include "core/workers.h"
 #include "sweep/sweep_case.h"
 
@@ -41,6 +43,14 @@ std::string EndOf(const SweepCase& entry, const CaseOutcome& outcome) {
   return fmt::format("{} failed: {}\n", entry.name, outcome.message);
 }
 
+// Says in log.txt and on the terminal that a case did not fit into the memory of this machine. It
+// gets no outcome: a machine with more memory, or a higher --memory-limit, may run it.
+void SayDoesNotFit(const SweepCase& entry, const std::string& reason, int terminal) {
+  const std::string line = fmt::format("{} does not fit into memory: {}\n", entry.name, reason);
+  for (const int descriptor : {STDERR_FILENO, terminal})
+    if (descriptor >= 0) dprintf(descriptor, "%s", line.c_str());
+}
+
 // Runs one case, in a process of its own.
 void RunCase(const SweepIdentity& identity, const SweepCase& entry, const fs::path& case_folder,
              bool retry_failed) {
@@ -56,6 +66,12 @@ void RunCase(const SweepIdentity& identity, const SweepCase& entry, const fs::pa
     outcome = RunCommand(identity.command, entry.settings, case_folder, &progress);
   } catch (const Interrupted&) {
     throw;
+  } catch (const OutOfMemory& problem) {
+    SayDoesNotFit(entry, problem.what(), terminal);
+    return;
+  } catch (const std::bad_alloc&) {
+    SayDoesNotFit(entry, "an allocation failed", terminal);
+    return;
   } catch (const std::exception& problem) {
     outcome = {};
     outcome.message = problem.what();

@@ -93,6 +93,7 @@ check_zsh() {
   expect "lacuna sweep" "collect plan run" "$(typed 'lacuna sweep ')"
   expect "values" "local slurm" "$(typed 'lacuna sweep run --launcher ')"
   expect "lacuna diagnose --unt" "--until-done" "$(typed 'lacuna diagnose --unt')"
+  expect "an option that may be repeated" "--case" "$(typed 'lacuna sweep run --case 1 --ca')"
 }
 
 "check_$kind"

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "scan/test_files.h"
+#include "support/shared_data.h"
 
 namespace lacuna {
 namespace {

@@ -4,6 +4,7 @@
 #include "core/npy.h"
 #include "geometry/mesh_io.h"
 #include "scan/recording_fixture.h"
+#include "support/shared_data.h"
 
 namespace lacuna {
 namespace {

@@ -58,6 +58,7 @@ TEST(RecordingWriter, WritesWhatIsReadBack) {
   for (int frame = 0; frame < 3; ++frame)
     written.markers.positions.emplace_back(written.markers.places.array() + 0.001 * frame);
   WriteMarkerRecording(folder / "made", written);
+  EXPECT_FALSE(IsSimulatedRecording(folder / "made"));
 
   const Recording recording = LoadRecording(folder / "made");
   EXPECT_EQ(recording.name, written.name);
@@ -83,6 +84,18 @@ TEST(RecordingWriter, WritesWhatIsReadBack) {
   EXPECT_EQ(SelectNodes(*recording.object.forces[0].region, mesh.nodes), (std::vector<int>{1, 3}));
   EXPECT_EQ(recording.reference.source, ReferenceSource::kTetMesh);
   EXPECT_EQ(ReadTetMesh(recording.reference.file).mesh.nodes, mesh.nodes);
+}
+
+TEST(RecordingWriter, ASimulatedRecordingIsRecognised) {
+  const TemporaryFolder folder;
+  EXPECT_FALSE(IsSimulatedRecording(folder / "absent"));
+  MarkerRecording written;
+  written.comment = std::string(kSimulated) + " from bar.yaml.";
+  written.reference = folder / "object.msh";
+  written.times = {0};
+  written.markers = {{"m"}, Eigen::Matrix3Xd::Zero(3, 1), {Eigen::Matrix3Xd::Zero(3, 1)}};
+  WriteMarkerRecording(folder / "made", written);
+  EXPECT_TRUE(IsSimulatedRecording(folder / "made"));
 }
 
 }  // namespace

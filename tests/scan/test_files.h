@@ -2,7 +2,6 @@
 #ifndef LACUNA_TESTS_SCAN_TEST_FILES_H_
 #define LACUNA_TESTS_SCAN_TEST_FILES_H_
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -32,13 +31,6 @@ inline std::string ErrorOf(const std::function<void()>& action) {
     return error.what();
   }
   return "no error";
-}
-
-// The folder of the published data sets; it may not exist.
-inline std::filesystem::path SharedData() {
-  const char* named = std::getenv("LACUNA_DATA");
-  return named != nullptr ? std::filesystem::path(named)
-                          : std::filesystem::path(LACUNA_SOURCE_DIR) / "../shared/data";
 }
 
 }  // namespace lacuna

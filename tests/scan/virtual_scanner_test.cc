@@ -9,6 +9,7 @@
 #include "geometry/nearest.h"
 #include "scan/random_bits.h"
 #include "scan/recording.h"
+#include "scan/recording_writer.h"
 #include "scan/scan_writer.h"
 #include "scan/test_files.h"
 #include "support/shapes.h"
@@ -222,6 +223,7 @@ TEST_P(ScanWriter, WritesAnOrdinaryRecording) {
   const std::vector<VirtualCamera> cameras = PlaceCameras(RingAround({0.05, 0.015, 0.015}));
   WriteScan(folder.Path(), "bar", object, {{first, second}, {0, 0.25}, cameras, options},
             GetParam());
+  EXPECT_TRUE(IsSimulatedRecording(folder.Path()));
 
   const Recording recording = LoadRecording(folder.Path());
   EXPECT_EQ(recording.name, "bar");

@@ -49,6 +49,9 @@ TEST(Slurm, AJobRunsOneCasePerTaskWithTheGivenOptions) {
   EXPECT_THAT(script, HasSubstr("exec '/opt/a lacuna/bin' --threads \"${SLURM_CPUS_PER_TASK:-1}\" "
                                 "sweep run '/data/it'\\''s mine' --case "
                                 "\"$SLURM_ARRAY_TASK_ID\"\n"));
+  options.memory_limit = 4'000'000'000;
+  EXPECT_THAT(SlurmScript("/data", options),
+              HasSubstr(":-1}\" --memory-limit 4000000000 sweep run '/data' --case "));
 }
 
 TEST(Slurm, SubmitsWithFurtherOptionsAndReturnsTheJobId) {

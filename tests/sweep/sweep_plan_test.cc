@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <set>
+
 #include "core/error.h"
 #include "reconstruction/reconstruction_study.h"
 #include "small_sweep.h"
@@ -29,10 +32,20 @@ std::vector<std::string> NamesOf(const SweepPlan& plan) {
   return names;
 }
 
+// A folder, if it exists, and everything in it.
+std::set<std::filesystem::path> ContentOf(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder)) return {};
+  std::set<std::filesystem::path> content = {folder};
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    content.insert(entry.path());
+  return content;
+}
+
 void ExpectRefused(const TemporaryFolder& folder, const std::string& lines,
                    const ::testing::Matcher<const std::string&>& message) {
+  const auto before = ContentOf(folder / "cases");
   EXPECT_THAT([&] { PlanSmallSweep(folder.Path(), lines); }, ThrowsMessage<InputError>(message));
-  EXPECT_FALSE(std::filesystem::exists(folder / "cases/sweep.json")) << "something was written";
+  EXPECT_EQ(ContentOf(folder / "cases"), before) << "something was written";
 }
 
 TEST(SweepPlan, ContainsTheGridWithSelfContainedExperiments) {
@@ -74,6 +87,14 @@ TEST(SweepPlan, KeepsNamesWhenTheSweepGrows) {
   EXPECT_EQ(shrunk.added, 0);
   EXPECT_EQ(shrunk.cases.size(), 7u);
   EXPECT_EQ(shrunk.absent.size(), 6u);
+}
+
+// A carriage return, too, would end the comment at the head of the case's files.
+TEST(SweepPlan, ACaseIsDescribedOnOneLine) {
+  SweepCase entry;
+  entry.experiment = "bend.yaml";
+  entry.changes = {{"name", "a\rb\r\nc"}, {"mesh.order", "1"}};
+  EXPECT_EQ(Describe(entry), "bend.yaml with name = a b  c, mesh.order = 1");
 }
 
 TEST(SweepPlan, RefusesACasePlannedFromOtherContents) {

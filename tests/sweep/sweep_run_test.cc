@@ -8,6 +8,7 @@
 
 #include "core/claim.h"
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "small_sweep.h"
 #include "support/temporary_folder.h"
 #include "sweep/sweep_table.h"
@@ -122,6 +123,19 @@ TEST_F(SweepRunTest, RunsOnlyTheRequestedCases) {
   EXPECT_TRUE(LoadOutcome(Case(1)).has_value());
   EXPECT_THROW(RunSweep(sweep_, {.numbers = {3}}), InputError);
   EXPECT_THROW(RunSweep(folder_.Path(), {}), InputError);
+}
+
+TEST_F(SweepRunTest, ACaseThatDoesNotFitIntoMemoryStaysPlanned) {
+  std::ofstream(folder_ / "fits.yaml")
+      << "schema_version: 1\nname: fits\ncommand: fit\n"
+      << "experiments: " << LACUNA_SOURCE_DIR << "/experiments/hidden_effect.yaml\n";
+  plan_ = PlanSweep(Config::Load(folder_ / "fits.yaml"), sweep_);
+  SetMemoryLimit(1);  // byte
+  EXPECT_EQ(RunSweep(sweep_, {}), 1);
+  SetMemoryLimit(0);
+  EXPECT_FALSE(LoadOutcome(Case(0)).has_value());
+  EXPECT_THAT(UnfinishedCases(sweep_, {}), ElementsAre(1));
+  EXPECT_THAT(FileContent(Case(0) / "log.txt"), HasSubstr("does not fit into memory: "));
 }
 
 TEST_F(SweepRunTest, CollectListsEveryCaseReproducibly) {

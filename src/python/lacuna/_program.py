@@ -10,6 +10,7 @@ import tempfile
 import warnings
 from pathlib import Path
 
+from ._installation import PREFIX
 from ._records import InputError
 from ._run import Run, open_run
 
@@ -26,9 +27,8 @@ def program() -> str:
     given = os.environ.get("LACUNA_PROGRAM")
     if given:
         return given
-    # PREFIX/lib/python3/dist-packages/lacuna/_program.py
-    beside = Path(__file__).resolve().parents[4] / "bin/lacuna"
-    found = str(beside) if os.access(beside, os.X_OK) else shutil.which("lacuna")
+    beside = os.path.normpath(Path(__file__).resolve().parent / PREFIX / "bin/lacuna")
+    found = beside if os.access(beside, os.X_OK) else shutil.which("lacuna")
     if found is None:
         raise FileNotFoundError("the program lacuna is not in PATH; LACUNA_PROGRAM can name it")
     return found

@@ -1,0 +1,146 @@
+// How the programs end, and what they refuse before they compute anything.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "support/ended_program.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+Ending Lacuna(const std::string& arguments) {
+  return EndingOf(std::string(LACUNA_PROGRAM) + " " + arguments);
+}
+
+Ending Trials(const std::string& arguments) {
+  return EndingOf(std::string(LACUNA_TRIALS_PROGRAM) + " " + arguments);
+}
+
+std::string Experiment(const std::string& name) {
+  return std::string(LACUNA_SOURCE_DIR) + "/experiments/" + name;
+}
+
+TEST(TrialsProgram, UnusableInputGivesTheStatusAndTheFormOfMessageOfLacuna) {
+  EXPECT_EQ(Trials("--help").status, 0);
+  EXPECT_EQ(Trials("bogus").status, 2);
+  EXPECT_EQ(Trials("make").status, 2);
+  const Ending absent = Trials("report /nowhere");
+  EXPECT_EQ(absent.status, 2);
+  EXPECT_THAT(absent.said, HasSubstr("lacuna-trials: /nowhere: there is no such folder"));
+}
+
+TEST(TrialsProgram, AnErrorOfTheFileSystemIsAMessage) {
+  // File names have at most 255 characters.
+  const Ending ending = Trials("report " + std::string(300, 'a'));
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_THAT(ending.said, HasSubstr("lacuna-trials: "));
+}
+
+TEST(TrialsProgram, RefusesWhatDoesNotFitIntoTheMemoryLimit) {
+  const TemporaryFolder folder;
+  const Ending ending =
+      Trials("--memory-limit 1MB make " + Experiment("trials/hidden_effect.yaml") + " " +
+             (folder / "cases").string());
+  EXPECT_EQ(ending.status, 1);
+  EXPECT_THAT(ending.said, HasSubstr("more than the limit of 1 MB"));
+  EXPECT_EQ(Trials("--memory-limit 0 report /nowhere").status, 2);
+}
+
+// Whether some case of a suite is being made.
+bool IsBegun(const fs::path& cases) {
+  if (!fs::is_directory(cases)) return false;
+  for (const auto& entry : fs::directory_iterator(cases))
+    if (fs::exists(entry.path() / "claimed")) return true;
+  return false;
+}
+
+TEST(TrialsProgram, CtrlCStopsWithTheStatusOfTheShells) {
+  const TemporaryFolder folder;
+  const fs::path cases = folder / "cases";
+  const std::string suite = Experiment("trials/hidden_effect.yaml");
+  const pid_t child = fork();
+  if (child == 0) {
+    (void)!freopen("/dev/null", "w", stdout);
+    (void)!freopen("/dev/null", "w", stderr);
+    execl(LACUNA_TRIALS_PROGRAM, LACUNA_TRIALS_PROGRAM, "make", suite.c_str(), cases.c_str(),
+          nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  pid_t ended = 0;
+  while (!IsBegun(cases) && (ended = waitpid(child, &status, WNOHANG)) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_EQ(ended, 0);  // the case takes minutes
+  kill(child, SIGINT);
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+}
+
+TEST(Simulate, DoesNotReplaceARecordingThatWasNotSimulated) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder / "mine");
+  std::ofstream(folder / "mine/recording.yaml") << "schema_version: 1\nname: measured\n";
+  const Ending ending =
+      Lacuna("simulate " + Experiment("scenes/bend.yaml") + " -o " + (folder / "motion").string() +
+             " --recording " + (folder / "mine").string());
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_THAT(ending.said, HasSubstr("mine/recording.yaml: was not written by a simulation"));
+  EXPECT_EQ(FileContent(folder / "mine/recording.yaml"), "schema_version: 1\nname: measured\n");
+  EXPECT_FALSE(fs::exists(folder / "motion"));
+}
+
+// Even where the recording that an experiment reads was simulated itself.
+TEST(Simulate, DoesNotReplaceWhatTheExperimentReads) {
+  const TemporaryFolder folder;
+  fs::copy(Experiment("recordings/hidden_effect/recording_1"), folder / "seen");
+  const std::string text = FileContent(folder / "seen/recording.yaml");
+  std::ofstream(folder / "seen/recording.yaml") << "# Simulated.\n" << text;
+  const std::string markers = FileContent(folder / "seen/markers.csv");
+  std::ofstream(folder / "e.yaml")
+      << "use: " << Experiment("hidden_effect.yaml")
+      << "\nrecordings:\n  - {recording: seen, to: 0.12 s, hold: {release: 0.1037 s, force: [0 N, "
+         "0 N, 0.05 N], region: {half_space: {point: [71.4274 mm, 0 mm, 0 mm], normal: [1, 0, "
+         "0]}}}}\n";
+  const Ending ending =
+      Lacuna("simulate " + (folder / "e.yaml").string() + " -o " + (folder / "motion").string() +
+             " --recording " + (folder / "seen/.").string());
+  EXPECT_EQ(ending.status, 2) << ending.said;
+  EXPECT_THAT(ending.said, HasSubstr("which the experiment reads"));
+  EXPECT_EQ(FileContent(folder / "seen/markers.csv"), markers);
+  EXPECT_FALSE(fs::exists(folder / "motion"));
+}
+
+TEST(Sweep, PassesTheMemoryLimitOnToTheTasksOfSlurm) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "sweep.yaml")
+      << "schema_version: 1\nname: fits\ncommand: fit\n"
+      << "experiments: " << Experiment("hidden_effect.yaml") << "\n";
+  const std::string cases = folder / "cases";
+  const Ending plan = Lacuna("sweep plan " + (folder / "sweep.yaml").string() + " " + cases);
+  ASSERT_EQ(plan.status, 0) << plan.said;
+  std::ofstream(folder / "sbatch") << "#!/bin/sh\necho 17\n";
+  chmod((folder / "sbatch").c_str(), 0755);
+  const Ending run = EndingOf("PATH=" + folder.Path().string() + ":$PATH " + LACUNA_PROGRAM +
+                              " --memory-limit 4GB sweep run " + cases + " --launcher slurm");
+  EXPECT_EQ(run.status, 0) << run.said;
+  EXPECT_THAT(FileContent(folder / "cases/slurm/job.sh"),
+              HasSubstr(" --memory-limit 4000000000 sweep run "));
+}
+
+}  // namespace
+}  // namespace lacuna
