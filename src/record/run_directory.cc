@@ -126,10 +126,14 @@ RunDirectory::RunDirectory(const fs::path& folder) : folder_(folder) {
   RefuseForeignFolder(folder_);
   const fs::path file = folder_ / kLockName;
   const bool was_run = fs::exists(file);
+  // A manifest of another program, in whose folder no run has been, is refused before a lock is
+  // left there: the next attempt would take it for a damaged manifest of a run.
+  if (!was_run && fs::exists(folder_ / kManifestName)) LoadManifest(folder_ / kManifestName);
   lock_.emplace(file);
   if (!lock_->holds()) {
-    throw InputError({folder_.string()},
-                     fmt::format("is in use by another run ({})", HolderOf(file)));
+    const std::string holder = HolderOf(file);  // empty if the other run has just ended
+    throw InputError({folder_.string()}, "is in use by another run" +
+                                             (holder.empty() ? "" : fmt::format(" ({})", holder)));
   }
   for (const auto& entry : fs::directory_iterator(folder_)) {
     if (IsPartialFolder(entry.path())) fs::remove_all(entry.path());

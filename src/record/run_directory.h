@@ -9,6 +9,10 @@
 // the key and skips the stage. A crash, a full disk or an interrupt leaves at worst a folder that
 // the manifest does not list. The folder of a stage belongs to the program: all other files in it
 // are deleted when the stage is computed again.
+//
+// Any number of commands may begin in the same folder at the same moment, also in a new one. One of
+// them gets it; the others are told that it is in use, until the first has ended. A command that
+// gets the folder after another one finds the stages that the other has stored.
 #ifndef LACUNA_RECORD_RUN_DIRECTORY_H_
 #define LACUNA_RECORD_RUN_DIRECTORY_H_
 
@@ -35,9 +39,11 @@ struct StageCheck {
 
 class RunDirectory {
  public:
-  // Opens or creates the folder and locks it for this process. The lock is released when the
-  // process ends, even by a crash. Throws InputError if the folder is not writable, is in use by
-  // another run, or contains something other than a run.
+  // Opens or creates the folder and locks it during the lifetime of the object, also against other
+  // threads of this process. The lock is released when the process ends, even by a crash. Throws
+  // InputError if the folder is not writable, "is in use by another run" (with its host and process
+  // id, unless it has just ended), or contains something other than a run. What other runs create
+  // in the folder at the same moment is never taken for the latter.
   explicit RunDirectory(const std::filesystem::path& folder);
 
   const std::filesystem::path& Folder() const { return folder_; }
