@@ -90,10 +90,7 @@ std::shared_ptr<const Effect> MakeAttachedMass(double mass, const Eigen::Vector3
 
 CatalogueEntry AttachedMass() {
   return {&AttachedMassEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
-            return std::make_shared<AttachedMassEffect>(parameters);
-          },
-          &ReadParameters};
+          &MakeAs<AttachedMassEffect>, &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -36,6 +36,9 @@ struct CatalogueEntry {
   std::shared_ptr<const Effect> (*make_from_yaml)(const Config& config) = nullptr;
   // For such an effect: the YAML mapping that describes it.
   std::string (*format)(const Effect& effect) = nullptr;
+  // Whether the effect is a law that the user writes: a diagnosis tries those that an experiment
+  // lists as candidates, each under its own name.
+  bool is_own_law = false;
 };
 
 // Every entry; the elasticity laws come first.

@@ -93,10 +93,7 @@ class DensityGradientEffect final : public CloneableEffect<DensityGradientEffect
 
 CatalogueEntry DensityGradient() {
   return {&DensityGradientEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
-            return std::make_shared<DensityGradientEffect>(parameters);
-          },
-          &ReadParameters};
+          &MakeAs<DensityGradientEffect>, &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -117,10 +117,7 @@ class DragEffect final : public CloneableEffect<DragEffect> {
 }  // namespace
 
 CatalogueEntry Drag() {
-  return {&DragEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
-            return std::make_shared<DragEffect>(parameters);
-          },
+  return {&DragEffect::TheCard(), CatalogueEntry::Kind::kEffect, &MakeAs<DragEffect>,
           &ReadParameters};
 }
 

@@ -137,10 +137,7 @@ class ElastoplasticLaw {
 
 CatalogueEntry ElastoplasticBranch() {
   return {&ElastoplasticLaw::Card(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
-            return std::make_shared<MemoryBranch<ElastoplasticLaw>>(parameters);
-          },
-          &ReadParameters};
+          &MakeAs<MemoryBranch<ElastoplasticLaw>>, &ReadParameters};
 }
 
 }  // namespace lacuna

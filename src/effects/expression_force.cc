@@ -284,11 +284,10 @@ std::string Format(const Effect& effect) {
 }  // namespace
 
 CatalogueEntry ExpressionForce() {
-  CatalogueEntry entry;
-  entry.card = &TheCard();
-  entry.make_from_yaml = &MakeExpressionForce;
-  entry.format = &Format;
-  return entry;
+  return {.card = &TheCard(),
+          .make_from_yaml = &MakeExpressionForce,
+          .format = &Format,
+          .is_own_law = true};
 }
 
 }  // namespace lacuna

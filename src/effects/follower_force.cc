@@ -254,10 +254,7 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
 
 CatalogueEntry FollowerForce() {
   return {&FollowerForceEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
-            return std::make_shared<FollowerForceEffect>(parameters);
-          },
-          &ReadParameters};
+          &MakeAs<FollowerForceEffect>, &ReadParameters};
 }
 
 }  // namespace lacuna

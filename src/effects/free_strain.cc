@@ -46,6 +46,20 @@ void FreeStrain::AddElasticityDerivative(const Kinematics& at, int parameter,
       derivative);
 }
 
+bool FreeStrain::AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const {
+  if (IsNone()) return true;
+  Eigen::Matrix3Xd of_law = Eigen::Matrix3Xd::Zero(3, stress->cols());
+  WithElasticPart(at,
+                  [&](const ElasticPart& elastic) { Law(at).AddStress(elastic.state, &of_law); });
+  const Eigen::VectorXd stretch = Stretches(at.body);
+  for (Eigen::Index q = 0; q < stretch.size(); ++q)
+    stress->middleCols<3>(3 * q) += stretch[q] * stretch[q] * of_law.middleCols<3>(3 * q);
+  of_law.setZero();
+  Law(at).AddStress(AsSeenByLaw(at, at.body, at.position), &of_law);
+  *stress -= of_law;
+  return true;
+}
+
 void FreeStrain::AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                              BlockMatrix* tangent) const {
   if (IsNone() || weights.position == 0 || convexify) return;

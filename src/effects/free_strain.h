@@ -2,8 +2,10 @@
 // heated material: they change the state that the elasticity law of the body sees, and add the
 // difference between what the law adds there and what it adds in the actual state,
 //   E = e E_el(elastic part) − E_el(x),   f = s f_el(elastic part) − f_el(x),
-//   ∂f/∂x = k K_el(elastic part) − K_el(x),
-// with the energy E_el, the force f_el and the derivative K_el = ∂f_el/∂x of the law.
+//   ∂f/∂x = k K_el(elastic part) − K_el(x),   P = λ² P_el(F/λ) − P_el(F),
+// with the energy E_el, the force f_el, its derivative K_el = ∂f_el/∂x and the first
+// Piola–Kirchhoff stress P_el of the law, and with the free stretch λ of the material, the same in
+// all directions.
 #ifndef LACUNA_EFFECTS_FREE_STRAIN_H_
 #define LACUNA_EFFECTS_FREE_STRAIN_H_
 
@@ -15,8 +17,8 @@
 
 namespace lacuna {
 
-// A base class for such effects: theirs are card, parameters, stress, the derivative with respect
-// to the strain, and the following two.
+// A base class for such effects: theirs are card, parameters, the derivative with respect to the
+// strain, and the following three.
 class FreeStrain : public Effect {
  public:
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const final;
@@ -25,6 +27,7 @@ class FreeStrain : public Effect {
                    BlockMatrix* tangent) const final;
   void AddElasticityDerivative(const Kinematics& at, int parameter,
                                Eigen::VectorXd* derivative) const final;
+  bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const final;
   std::optional<double> Energy(const Kinematics& at) const final;
 
  protected:
@@ -40,6 +43,8 @@ class FreeStrain : public Effect {
   // Calls `use` once with the elastic part of the state, which lives as long as the call.
   virtual void WithElasticPart(const Kinematics& at,
                                const std::function<void(const ElasticPart&)>& use) const = 0;
+  // λ at each quadrature point.
+  virtual Eigen::VectorXd Stretches(const Body& body) const = 0;
 
   // CHECKs that there is a law.
   static const Effect& Law(const Kinematics& at);

@@ -154,10 +154,7 @@ Eigen::VectorXd ReadPointForce(const EffectCard& card, const Config& config,
 }  // namespace
 
 CatalogueEntry PointForce() {
-  return {&PointForceEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
-            return std::make_shared<PointForceEffect>(parameters);
-          },
+  return {&PointForceEffect::TheCard(), CatalogueEntry::Kind::kEffect, &MakeAs<PointForceEffect>,
           &ReadPointForce};
 }
 

@@ -307,10 +307,7 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
 }  // namespace
 
 CatalogueEntry Pressure() {
-  return {&PressureEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
-            return std::make_shared<PressureEffect>(parameters);
-          },
+  return {&PressureEffect::TheCard(), CatalogueEntry::Kind::kEffect, &MakeAs<PressureEffect>,
           &ReadParameters};
 }
 

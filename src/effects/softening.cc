@@ -120,10 +120,7 @@ class SofteningLaw {
 }  // namespace
 
 CatalogueEntry Softening() {
-  return {&SofteningLaw::Card(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
-            return std::make_shared<MemoryBranch<SofteningLaw>>(parameters);
-          },
+  return {&SofteningLaw::Card(), CatalogueEntry::Kind::kEffect, &MakeAs<MemoryBranch<SofteningLaw>>,
           &ReadParameters};
 }
 

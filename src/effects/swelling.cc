@@ -39,19 +39,6 @@ class SwellingEffect final : public CloneableEffect<SwellingEffect, FreeStrain> 
     strain_ = values[0];
   }
 
-  bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
-    if (strain_ == 0) return true;
-    Eigen::Matrix3Xd of_law = Eigen::Matrix3Xd::Zero(3, stress->cols());
-    WithElasticPart(at, [&](const ElasticPart& elastic) {
-      Law(at).AddStress(elastic.state, &of_law);
-      *stress += elastic.of_force * of_law;
-    });
-    of_law.setZero();
-    Law(at).AddStress(AsSeenByLaw(at, at.body, at.position), &of_law);
-    *stress -= of_law;
-    return true;
-  }
-
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
     CHECK_EQ(parameter, 0);
@@ -68,6 +55,10 @@ class SwellingEffect final : public CloneableEffect<SwellingEffect, FreeStrain> 
     const double s = Stretch();
     const Eigen::VectorXd position = at.position / s;
     use({AsSeenByLaw(at, at.body, position), s * s, s, s * s * s});
+  }
+
+  Eigen::VectorXd Stretches(const Body& body) const override {
+    return Eigen::VectorXd::Constant(body.PointCount(), Stretch());
   }
 
   static EffectCard MakeCard() {

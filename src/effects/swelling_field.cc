@@ -78,20 +78,6 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect, Fr
     swollen_.Forget();
   }
 
-  bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
-    if (strain_ == 0) return true;
-    const auto swollen = Swollen(at.body);
-    Eigen::Matrix3Xd of_law = Eigen::Matrix3Xd::Zero(3, stress->cols());
-    Law(at).AddStress(AsSeenByLaw(at, *swollen, at.position), &of_law);
-    const Eigen::VectorXd stretch = Stretches(at.body);
-    for (Eigen::Index q = 0; q < stretch.size(); ++q)
-      stress->middleCols<3>(3 * q) += stretch[q] * stretch[q] * of_law.middleCols<3>(3 * q);
-    of_law.setZero();
-    Law(at).AddStress(AsSeenByLaw(at, at.body, at.position), &of_law);
-    *stress -= of_law;
-    return true;
-  }
-
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
     CHECK_EQ(parameter, 0);
@@ -124,7 +110,7 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect, Fr
 
   // s at the quadrature points; not a number where the strain is −1 or less, because nothing can
   // shrink that far.
-  Eigen::VectorXd Stretches(const Body& body) const {
+  Eigen::VectorXd Stretches(const Body& body) const override {
     const Eigen::ArrayXd stretch = 1 + strain_ * FieldAtPoints(body)->array();
     return (stretch > 0).select(stretch, std::numeric_limits<double>::quiet_NaN());
   }
@@ -170,11 +156,7 @@ std::string Format(const Effect& effect) {
 }  // namespace
 
 CatalogueEntry SwellingField() {
-  CatalogueEntry entry;
-  entry.card = &TheCard();
-  entry.make_from_yaml = &MakeSwellingField;
-  entry.format = &Format;
-  return entry;
+  return {.card = &TheCard(), .make_from_yaml = &MakeSwellingField, .format = &Format};
 }
 
 }  // namespace lacuna

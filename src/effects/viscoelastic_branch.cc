@@ -133,10 +133,7 @@ const EffectCard& ViscoelasticBranchCard() { return ViscoelasticLaw::Card(); }
 
 CatalogueEntry ViscoelasticBranch() {
   return {&ViscoelasticLaw::Card(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
-            return std::make_shared<MemoryBranch<ViscoelasticLaw>>(parameters);
-          },
-          &ReadParameters};
+          &MakeAs<MemoryBranch<ViscoelasticLaw>>, &ReadParameters};
 }
 
 }  // namespace lacuna

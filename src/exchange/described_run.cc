@@ -53,23 +53,22 @@ std::vector<PortableParameter> ParametersOf(const CalibrationRecord& record) {
   return parameters;
 }
 
-void PredictPositions(const Model& model, const PredictionOptions& options,
-                      DescribedRun* described) {
-  std::vector<double> times;
-  for (const double frame : described->model.frames)
-    times.push_back(described->model.start + frame);
-  const Eigen::Index size = 3 * model.body->NodeCount();
-  described->positions.resize(size, static_cast<Eigen::Index>(times.size()) + 1);
-  const PredictionSummary summary =
-      Predict(model, options, times, {}, [&](int index, const PredictedState& state) {
-        described->positions.col(index + 1) = state.position;
-      });
-  if (!summary.IsUsable())
-    throw InputError("the motion could not be predicted: " + summary.message);
-  described->positions.col(0) = summary.held;
-}
-
 }  // namespace
+
+std::vector<double> FramesUntil(double until, const std::vector<double>& times, double delay,
+                                double start) {
+  std::vector<double> frames;
+  for (const double time : times) {
+    const double frame = time - delay;
+    if (time <= until) {
+      frames.push_back(frame);
+    } else if (frame > start && (frames.empty() || frames.back() <= start)) {
+      throw InputError(fmt::format(
+          "--until {} leaves nothing of the motion, whose first frame is at {} s", until, time));
+    }
+  }
+  return frames;
+}
 
 DescribedRun DescribeRun(const std::filesystem::path& run, const DescribedRunOptions& options) {
   const FittedRun fitted = OpenRun(run);
@@ -78,21 +77,34 @@ DescribedRun DescribeRun(const std::filesystem::path& run, const DescribedRunOpt
   const CalibrationProblem problem(fitted.study, fitted.mesh);
   const RecordingModel model = problem.ModelAt(index, fitted.values);
   const Eigen::VectorXd nuisance = problem.NuisanceOf(index, fitted.values);
-  std::vector<double> frames;
+  std::vector<double> times;
   for (const int frame : item.frames)
-    if (item.recording.times[static_cast<size_t>(frame)] <= options.until)
-      frames.push_back(item.recording.times[static_cast<size_t>(frame)] - model.Delay(nuisance));
-  const Model placed = model.PlacedModel(nuisance);
-  const PredictionOptions prediction = model.Options(nuisance);
-  DescribedRun described{
-      DescribeModel(placed, fitted.mesh, prediction, frames, NamesOf(item, fitted.mesh)), {}};
+    times.push_back(item.recording.times[static_cast<size_t>(frame)]);
+  DescribedRun described{{}, model.PlacedModel(nuisance), model.Options(nuisance)};
+  const std::vector<double> frames =
+      FramesUntil(options.until, times, model.Delay(nuisance), described.prediction.start_time);
+  described.model = DescribeModel(described.source, fitted.mesh, described.prediction, frames,
+                                  NamesOf(item, fitted.mesh));
   described.model.run = fitted.study.name;
   described.model.experiment = fitted.study.file.filename().string();
   described.model.recording = item.name;
   described.model.program_version = ProgramVersion();
   described.model.parameters = ParametersOf(fitted.record);
-  if (options.with_positions) PredictPositions(placed, prediction, &described);
   return described;
+}
+
+Eigen::MatrixXd PredictPositions(const DescribedRun& run) {
+  std::vector<double> times;
+  for (const double frame : run.model.frames) times.push_back(run.model.start + frame);
+  Eigen::MatrixXd positions(3 * run.source.body->NodeCount(),
+                            static_cast<Eigen::Index>(times.size()) + 1);
+  const PredictionSummary summary = Predict(
+      run.source, run.prediction, times, {},
+      [&](int index, const PredictedState& state) { positions.col(index + 1) = state.position; });
+  if (!summary.IsUsable())
+    throw InputError("the motion could not be predicted: " + summary.message);
+  positions.col(0) = summary.held;
+  return positions;
 }
 
 }  // namespace lacuna

@@ -18,15 +18,27 @@ using Kind = PortableEffect::Kind;
 using How = Counterpart::Kind;
 constexpr int kMostBranches = 6;  // of FEBio's viscoelastic material
 
-bool IsWritten(const PortableEffect& branch, const PortableModel& model) {
-  return branch.kind == Kind::kViscoelasticBranch && model.IsProportional(branch);
+// The branches that are written: the first ones that are proportional to the material.
+std::vector<const PortableEffect*> Branches(const PortableModel& model) {
+  std::vector<const PortableEffect*> branches;
+  for (const PortableEffect& effect : model.effects)
+    if (effect.kind == Kind::kViscoelasticBranch && model.IsProportional(effect) &&
+        branches.size() < kMostBranches)
+      branches.push_back(&effect);
+  return branches;
 }
 
-std::vector<PortableEffect> Branches(const PortableModel& model) {
-  std::vector<PortableEffect> branches;
-  for (const PortableEffect& effect : model.effects)
-    if (IsWritten(effect, model) && branches.size() < kMostBranches) branches.push_back(effect);
-  return branches;
+// `branch` is one of the effects of the model.
+Counterpart BranchCounterpart(const PortableEffect& branch, const PortableModel& model) {
+  if (!model.IsProportional(branch))
+    return {branch.name, How::kNone, "its Poisson's ratio is not that of the material"};
+  const std::vector<const PortableEffect*> branches = Branches(model);
+  if (std::find(branches.begin(), branches.end(), &branch) == branches.end())
+    return {
+        branch.name, How::kNone,
+        fmt::format("viscoelastic has at most {} branches, and others come first", kMostBranches)};
+  return {branch.name, How::kConverted,
+          "viscoelastic with g = m/E, over the elastic stress in place of Hooke's"};
 }
 
 Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel& model) {
@@ -47,11 +59,7 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
     case Kind::kGravity:
       return {effect.name, How::kExact, "nodal loads, the weights of the lumped masses"};
     case Kind::kViscoelasticBranch:
-      if (!IsWritten(effect, model))
-        return {effect.name, How::kNone, "its Poisson's ratio is not that of the material"};
-      return {
-          effect.name, How::kConverted,
-          "viscoelastic with g = m/E, over the elastic stress in place of Hooke's; at most six"};
+      return BranchCounterpart(effect, model);
     default:
       return {effect.name, How::kNone, "no element of the format that is written describes it"};
   }
@@ -59,8 +67,8 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
 
 double RampTime(const PortableModel& model) {
   double time = 1;
-  for (const PortableEffect& branch : Branches(model))
-    time = std::max(time, 1e3 * branch.values[1]);
+  for (const PortableEffect* branch : Branches(model))
+    time = std::max(time, 1e3 * branch->values[1]);
   return time;
 }
 
@@ -101,13 +109,13 @@ class Writer {
                     law.kind == Kind::kNeoHookean ? "neo-Hookean" : "isotropic elastic",
                     model_.density, law.values[0], law.values[1]);
     const std::string head = "<Material>\n<material id=\"1\" name=\"lacuna\" ";
-    const std::vector<PortableEffect> branches = Branches(model_);
+    const std::vector<const PortableEffect*> branches = Branches(model_);
     if (branches.empty()) return head + elastic + "</material>\n</Material>\n";
     std::string text =
         head + fmt::format("type=\"viscoelastic\">\n<density>{}</density>\n", model_.density);
     for (size_t k = 0; k < branches.size(); ++k)
       text += fmt::format("<g{0}>{1}</g{0}><t{0}>{2}</t{0}>\n", k + 1,
-                          branches[k].values[0] / law.values[0], branches[k].values[1]);
+                          branches[k]->values[0] / law.values[0], branches[k]->values[1]);
     return text + "<elastic " + elastic + "</elastic>\n</material>\n</Material>\n";
   }
 
@@ -265,7 +273,7 @@ Counterparts FebCounterparts(const PortableModel& model) {
     parts.push_back({"force " + load.part.name, How::kExact, "nodal loads with a load curve"});
   if (model.held_force.size() > 0)
     parts.push_back({"hold", How::kExact, "nodal loads that vanish when the motion starts"});
-  if (!model.is_static)
+  if (model.HasInertia())
     parts.push_back({"inertia", How::kConverted,
                      "consistent masses in place of lumped ones; FEBio's time scheme"});
   return parts;

@@ -8,9 +8,11 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/file_name.h"
 #include "core/quoted_text.h"
 #include "effects/standard_cards.h"
-#include "exchange/inp_writer.h"
+#include "exchange/counterpart.h"
+#include "exchange/unique_names.h"
 #include "geometry/mesh_io.h"
 
 namespace lacuna {
@@ -27,8 +29,41 @@ const ImportedMaterial* MaterialOf(const ImportedModel& model) {
   return model.materials.empty() ? nullptr : &model.materials.front();
 }
 
-std::string Recording(const ImportedModel& model, const std::string& name,
-                      const std::filesystem::path& source, const std::vector<std::string>& sets) {
+constexpr const char* kRecordingFile = "recording.yaml";
+
+void RequireUsableName(const std::string& name, const std::filesystem::path& source) {
+  if (!IsFileName(name))
+    throw InputError({source.string()},
+                     "the experiment is named after the file, so that its name must not begin with "
+                     "a dot or contain a backslash or a control character; rename it");
+  if (name + ".yaml" == kRecordingFile)
+    throw InputError({source.string()},
+                     fmt::format("the experiment is named after the file, but {} describes the "
+                                 "recording; rename it",
+                                 kRecordingFile));
+}
+
+// For each node set the name of its region, which is also part of the name of a file.
+std::vector<std::string> RegionNames(const ImportedModel& model) {
+  UniqueNames taken;
+  std::vector<std::string> names;
+  for (const NamedNodes& set : model.node_sets) names.push_back(taken.Add(Identifier(set.name)));
+  return names;
+}
+
+std::string RegionsText(const ImportedModel& model, const std::vector<std::string>& names) {
+  if (names.empty()) return "#   the file has no node sets\n";
+  std::string text = "# fixed:\n";
+  for (size_t k = 0; k < names.size(); ++k) {
+    const std::string& set = model.node_sets[k].name;
+    text += fmt::format("#   - {{name: {0}, nodes_file: nodes_{0}.txt}}", names[k]);
+    text += set == names[k] ? "\n" : fmt::format("   # {} in the file\n", CommentText(set));
+  }
+  return text;
+}
+
+std::string RecordingText(const ImportedModel& model, const std::string& name,
+                          const std::string& source, const std::vector<std::string>& regions) {
   std::string text = fmt::format(
       "# Made from {}. Complete what is marked TO DO; docs/recording.md has the keys.\n"
       "schema_version: 1\nname: {}\nlength_unit: m                    # TO DO: of the numbers in "
@@ -39,15 +74,12 @@ std::string Recording(const ImportedModel& model, const std::string& name,
       "  marker_places:                  # TO DO: each marker's position on the undeformed object\n"
       "    - {{name: tip, position: [{} m, {} m, {} m]}}\n"
       "reference: {{from: tet_mesh, file: {}, length_unit: m}}\n",
-      source.filename().string(), QuotedText(name), model.mesh.nodes(0, 0), model.mesh.nodes(1, 0),
+      source, QuotedText(name), model.mesh.nodes(0, 0), model.mesh.nodes(1, 0),
       model.mesh.nodes(2, 0), QuotedText(name + ".msh"));
   text +=
       "# TO DO: use the node sets where they belong: parts that do not move (fixed), parts that\n"
       "# are moved (gripped), or the regions of measured forces.\n";
-  text += sets.empty() ? "#   the file has no node sets\n" : "# fixed:\n";
-  for (const std::string& set : sets)
-    text += fmt::format("#   - {{name: {0}, nodes_file: nodes_{0}.txt}}\n", set);
-  return text;
+  return text + RegionsText(model, regions);
 }
 
 bool HasElasticity(const ImportedMaterial* material) {
@@ -70,18 +102,19 @@ std::string MaterialText(const ImportedMaterial* material) {
       is_known ? "" : "   # TO DO: not in the file");
 }
 
-std::string Experiment(const ImportedModel& model, const std::string& name,
-                       const std::filesystem::path& source) {
+std::string ExperimentText(const ImportedModel& model, const std::string& name,
+                           const std::string& source) {
   const ImportedMaterial* material = MaterialOf(model);
   std::string text = fmt::format(
       "# Made from {}. docs/prediction.md has the keys.\n"
       "#   lacuna fit {}.yaml\n"
       "schema_version: 1\nname: {}\noutput: {}\n",
-      source.filename().string(), name, QuotedText(name), QuotedText(name + "_run"));
+      source, name, QuotedText(name), QuotedText(name + "_run"));
   text += MaterialText(material);
   for (const ImportedMaterial& other : model.materials)
     if (&other != material)
-      text += fmt::format("# The file has another material, {}, which is not used\n", other.name);
+      text += fmt::format("# The file has another material, {}, which is not used\n",
+                          CommentText(other.name));
   // The mesh is given, so that its settings only say which order of elements is used.
   text += fmt::format(
       "mesh: {{max_volume: 1 m^3, order: {}}}   # the elements of the file are used as they are\n"
@@ -95,8 +128,8 @@ std::string Experiment(const ImportedModel& model, const std::string& name,
       "    # fit_until: 1 s              # TO DO: hold out the later frames\n",
       start / 10, start * 10);
   if (!model.not_read.empty()) {
-    text += fmt::format("# Not read from {}:\n", source.filename().string());
-    for (const std::string& line : model.not_read) text += "#   " + line + "\n";
+    text += fmt::format("# Not read from {}:\n", source);
+    for (const std::string& line : model.not_read) text += "#   " + CommentText(line) + "\n";
   }
   return text;
 }
@@ -117,11 +150,14 @@ std::vector<std::string> WriteImportedExperiment(const ImportedModel& model,
                                                  const std::string& name,
                                                  const std::filesystem::path& source,
                                                  const std::filesystem::path& folder) {
-  const std::vector<std::string> sets = InpSetNames(model.node_sets);
-  std::map<std::string, std::string> texts{{"recording.yaml", Recording(model, name, source, sets)},
-                                           {name + ".yaml", Experiment(model, name, source)}};
-  for (size_t k = 0; k < sets.size(); ++k)
-    texts[fmt::format("nodes_{}.txt", sets[k])] =
+  RequireUsableName(name, source);
+  const std::vector<std::string> regions = RegionNames(model);
+  const std::string read = CommentText(source.filename().string());
+  std::map<std::string, std::string> texts{
+      {kRecordingFile, RecordingText(model, name, read, regions)},
+      {name + ".yaml", ExperimentText(model, name, read)}};
+  for (size_t k = 0; k < regions.size(); ++k)
+    texts[fmt::format("nodes_{}.txt", regions[k])] =
         fmt::format("{}\n", fmt::join(model.node_sets[k].nodes, "\n"));
   MakeFolder(folder);
   const std::string mesh = name + ".msh";

@@ -20,10 +20,13 @@ ImportedModel InSiUnits(ImportedModel model, InpUnits units);
 
 // Writes into `folder`, which is created,
 //   NAME.msh            the mesh, in m
-//   nodes_SET.txt       the numbers of the nodes of each node set, from 0
+//   nodes_SET.txt       the numbers of the nodes of each node set, from 0, with the name of the set
+//                       as an Identifier (unique_names.h)
 //   recording.yaml      reference and the node sets; what has to be completed is marked TO DO
 //   NAME.yaml           the experiment, with the material of the file where it has one
-// and returns their names. `model` is in SI units. Throws InputError where a file exists already.
+// and returns their names. `model` is in SI units, and `source` is the file that it was read from.
+// Throws InputError where a file exists already, and for a name that an experiment cannot have: one
+// that is no file name (IsFileName), or "recording".
 std::vector<std::string> WriteImportedExperiment(const ImportedModel& model,
                                                  const std::string& name,
                                                  const std::filesystem::path& source,

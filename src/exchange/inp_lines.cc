@@ -124,6 +124,11 @@ const std::string& InpLines::RequiredParameter(const std::string& name) const {
   return *value;
 }
 
+void InpLines::RefuseParametersBut(const std::set<std::string>& known) const {
+  for (const auto& [name, value] : parameters_)
+    if (!known.contains(name)) Fail(fmt::format("*{} with {} is not read", keyword_, name));
+}
+
 double InpLines::Number(size_t k, const char* what) const {
   if (k >= fields_.size()) Fail(fmt::format("the line ends where {} should follow", what));
   std::string word(fields_[k]);

@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,8 @@ class InpLines {
   const std::string* Parameter(const std::string& name) const;
   // The same, but the parameter must be there and have a value.
   const std::string& RequiredParameter(const std::string& name) const;
+  // Refuses a parameter of that keyword line that is not among `known`.
+  void RefuseParametersBut(const std::set<std::string>& known) const;
   // The keyword line as it stands in the file, without what continues it, and its line number. It
   // has no control characters.
   const std::string& KeywordText() const { return keyword_text_; }

@@ -133,7 +133,7 @@ Counterparts InpCounterparts(const PortableModel& model, InpDialect dialect) {
     parts.push_back({"force " + load.part.name, How::kExact, "*CLOAD with *AMPLITUDE"});
   if (model.held_force.size() > 0)
     parts.push_back({"hold", How::kExact, "*CLOAD in the first step, removed in the second"});
-  if (!model.is_static)
+  if (model.HasInertia())
     parts.push_back(
         {"inertia", How::kConverted,
          dialect == InpDialect::kCalculixPointMasses

@@ -94,6 +94,7 @@ class Reader {
       const int label = lines_.Label(0, "the number of a node");
       if (!nodes_.emplace(label, static_cast<int>(soup_.nodes.size())).second)
         lines_.Fail(fmt::format("node {} appears a second time", label));
+      node_labels_.push_back(label);
       soup_.nodes.emplace_back(lines_.Number(1, "x"), lines_.Number(2, "y"), lines_.Number(3, "z"));
       if (set != nullptr) set->insert(label);
     }
@@ -142,8 +143,15 @@ class Reader {
   bool ReadSet(const char* parameter, const Numbers& numbers, Sets* sets,
                std::vector<std::string>* order) {
     lines_.RequiredParameter(parameter);
+    // A set of an instance is read like any other, because the numbers in the file are unique, and
+    // the order of UNSORTED is lost. INTERNAL hides a set from the user of Abaqus.
+    std::set<std::string> known = {parameter, "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED"};
+    const bool is_of_nodes = sets == &node_sets_;
+    if (is_of_nodes) known.insert("ELSET");
+    lines_.RefuseParametersBut(known);
     const bool generates = lines_.Parameter("GENERATE") != nullptr;
     std::set<int>* set = SetOf(parameter, sets, order);
+    if (is_of_nodes && lines_.Parameter("ELSET") != nullptr) return ReadNodesOfElements(set);
     while (NextData()) {
       if (generates) {
         AddRange(numbers, set);
@@ -165,6 +173,24 @@ class Reader {
           lines_.Fail(fmt::format("there is no number {}", label));
       }
     }
+    return has_next_;
+  }
+
+  // *NSET, NSET=A, ELSET=B: the nodes of the elements of B.
+  bool ReadNodesOfElements(std::set<int>* set) {
+    const std::string& name = lines_.RequiredParameter("ELSET");
+    if (const auto elements = element_sets_.find(name); elements != element_sets_.end()) {
+      for (const int label : elements->second) {
+        const auto tet = static_cast<size_t>(elements_.at(label));
+        const auto size = static_cast<size_t>(soup_.sizes[tet]);
+        CountEntries(size);
+        for (size_t k = 0; k < size; ++k)
+          set->insert(node_labels_[static_cast<size_t>(soup_.tets[tet][k])]);
+      }
+    } else if (!skips_elements_) {
+      lines_.Fail(fmt::format("there is no element set {} above", name));
+    }
+    if (NextData()) lines_.Fail("expected a keyword line: the nodes are those of the element set");
     return has_next_;
   }
 
@@ -246,7 +272,10 @@ class Reader {
       if (dropped > 0)
         model_.notes.push_back(fmt::format(
             "set {}: {} of its nodes belong to no tetrahedron and were dropped", name, dropped));
-      if (!set.nodes.empty()) named.push_back(std::move(set));
+      if (set.nodes.empty())
+        model_.notes.push_back(fmt::format("set {}: it is empty and was left out", name));
+      else
+        named.push_back(std::move(set));
     }
     return named;
   }
@@ -270,6 +299,7 @@ class Reader {
   size_t entries_ = 0;  // of all sets, those that repeat included
   TetSoup soup_;
   Numbers nodes_, elements_;
+  std::vector<int> node_labels_;  // in the order of soup_.nodes
   Sets node_sets_, element_sets_;
   std::vector<std::string> node_set_order_, element_set_order_;
   ImportedModel model_;

@@ -1,7 +1,8 @@
 // Reads mesh, sets and material of an input file of Abaqus or CalculiX.
 //
 // Read are *NODE, *ELEMENT with TYPE=C3D4 or C3D10, *NSET and *ELSET (also GENERATE and names of
-// other sets), and *MATERIAL with *ELASTIC and *DENSITY; *HEADING is skipped. The file is flat:
+// other sets; *NSET also with ELSET, the nodes of these elements), and *MATERIAL with *ELASTIC and
+// *DENSITY; *HEADING is skipped. The file is flat:
 // node numbers are unique, as CalculiX requires. Every other keyword, elements of other types
 // included, is listed in `not_read`. No other file is opened: *INCLUDE and, where data would have
 // to be read, INPUT=… are refused. Numbers stay in the file's own units, which an .inp file does
@@ -24,7 +25,8 @@ struct ImportedMaterial {
 };
 
 struct ImportedModel {
-  TetMesh mesh;                          // nodes in the order of the file, unused ones dropped
+  TetMesh mesh;  // nodes in the order of the file, unused ones dropped
+  // Those that are not empty; the others are named in `notes`.
   std::vector<NamedNodes> node_sets;     // of nodes of `mesh`, ascending
   std::vector<NamedNodes> element_sets;  // of elements of `mesh`, ascending
   std::vector<ImportedMaterial> materials;
@@ -34,8 +36,9 @@ struct ImportedModel {
 
 // Throws InputError with file and line for a line that does not follow the format, numbers that are
 // not finite, nodes or sets that do not exist, numbers that appear twice, sets of more than 30
-// million entries in all, coordinates that are not Cartesian, an elasticity that is not isotropic
-// or depends on temperature, or a mesh that ReadTetMesh would refuse (mesh_io.h).
+// million entries in all or with a parameter that is not known, coordinates that are not Cartesian,
+// an elasticity that is not isotropic or depends on temperature, or a mesh that ReadTetMesh would
+// refuse (mesh_io.h).
 ImportedModel ReadInp(const std::filesystem::path& file);
 
 }  // namespace lacuna

@@ -21,7 +21,9 @@ Json EffectJson(const PortableEffect& effect) {
   Json values = Json::object();
   for (Eigen::Index k = 0; k < effect.values.size(); ++k)
     values[effect.value_names[static_cast<size_t>(k)]] = effect.values[k];
-  return {{"type", effect.name}, {"parameters", values}};
+  Json json{{"type", effect.name}, {"parameters", values}};
+  if (!effect.yaml.empty()) json["yaml"] = effect.yaml;
+  return json;
 }
 
 Json GripJson(const PortableGrip& grip) {
@@ -60,13 +62,10 @@ Json ParameterJson(const PortableParameter& parameter) {
 
 Counterparts JsonCounterparts(const PortableModel& model) {
   Counterparts parts;
-  for (const PortableEffect& effect : model.effects) {
-    if (effect.is_own_law)
-      parts.push_back({effect.name, How::kNone,
-                       "a law of your own: its expressions stand in the experiment only"});
-    else
-      parts.push_back({effect.name, How::kExact, "name and parameters in model.json"});
-  }
+  for (const PortableEffect& effect : model.effects)
+    parts.push_back({effect.name, How::kExact,
+                     effect.yaml.empty() ? "name and parameters in model.json"
+                                         : "name, parameters and expressions in model.json"});
   for (const PortableGrip& grip : model.grips)
     parts.push_back({"grip " + grip.part.name, How::kExact, "model.json"});
   for (const PortableLoad& load : model.loads)

@@ -9,11 +9,12 @@
 
 namespace lacuna {
 
-// Everything but a force law of the user's own, whose expressions stand in the experiment.
+// Every part of the model is exact.
 Counterparts JsonCounterparts(const PortableModel& model);
 
 // `mesh_file` is the name of the file of the mesh. Nodes are numbered from 0; vectors are lists of
-// three numbers, and a motion or force is a list of them for each of `times`.
+// three numbers, and a motion or force is a list of them for each of `times`. An effect with
+// expressions has the key "yaml", its mapping in an experiment.
 nlohmann::ordered_json ModelJson(const PortableModel& model, const std::string& mesh_file);
 
 }  // namespace lacuna

@@ -97,6 +97,10 @@ Counterparts MujocoCounterparts(const PortableModel& model) {
   parts.push_back({"masses", How::kConverted, "every node gets the same share of the mass"});
   parts.push_back({"time step", How::kConverted,
                    "as short as MuJoCo needs, which takes the elasticity explicitly"});
+  if (!model.is_static)
+    parts.push_back({"inertia", How::kConverted,
+                     "integrator implicitfast, of first order in the time step, in place of "
+                     "Lacuna's time scheme"});
   for (const PortableGrip& grip : model.grips)
     parts.push_back({"grip " + grip.part.name, IsPin(grip) ? How::kExact : How::kNone,
                      IsPin(grip)                  ? "pin"

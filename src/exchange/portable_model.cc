@@ -36,11 +36,11 @@ Kind KindOf(const EffectCard& card) {
 
 PortableEffect DescribeEffect(const Effect& effect) {
   const EffectCard& card = effect.Card();
-  PortableEffect described{KindOf(card), card.type, effect.Parameters(), {}, false};
+  PortableEffect described{KindOf(card), card.type, effect.Parameters(), {}, {}};
   for (const ParameterCard& parameter : card.parameters)
     described.value_names.push_back(parameter.name);
   const CatalogueEntry* entry = FindEntry(card.type);
-  described.is_own_law = entry == nullptr || entry->make == nullptr;
+  if (entry != nullptr && entry->format != nullptr) described.yaml = entry->format(effect);
   return described;
 }
 

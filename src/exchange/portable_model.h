@@ -38,7 +38,9 @@ struct PortableEffect {
   std::string name;        // the effect's name in the catalogue
   Eigen::VectorXd values;  // in the order of the effect's card, SI
   std::vector<std::string> value_names;
-  bool is_own_law = false;  // written by the user as expressions, which are not described here
+  // The mapping that describes the effect in an experiment, where the user has written a part of it
+  // as an expression; otherwise empty.
+  std::string yaml;
 
   bool IsElasticity() const { return kind <= Kind::kNeoHookean; }
 };
@@ -114,6 +116,8 @@ struct PortableModel {
   // The damping of the effects that are proportional; β refers to the material's own modulus.
   RayleighDamping Damping() const;
   double Duration() const { return times.back(); }
+  // Whether a motion with inertia follows the equilibrium at the start.
+  bool HasInertia() const { return !is_static && !frames.empty(); }
 };
 
 // What the model of a recording is called, and what is exported of its motion.

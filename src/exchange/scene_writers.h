@@ -2,10 +2,13 @@
 // scene), MuJoCo (MJCF) and USD (a TetMesh). They have linear tetrahedra only, so that of quadratic
 // elements the corner nodes are kept. SI units.
 //
-// Sources: SOFA documentation, TetrahedronHyperelasticityFEMForceField and
-// TetrahedronFEMForceField; MuJoCo XML reference, flexcomp; USD 24.08, UsdGeomTetMesh,
-// UsdGeomSubset and UsdPhysics. The deformable body follows the proposal "Deformable Body Physics
-// in USD" (pull request 111 of PixarAnimationStudios/OpenUSD-proposals, as of commit 584939b):
+// Sources: SOFA's documentation of TetrahedronFEMForceField, and its code from v24.06, the first
+// version that has all components under the names that are written, to v26.06:
+// material/NeoHookean.h (ψ = μ/2 (F:F − 3) − μ ln J + λ/2 (ln J)², as in FEBio; see feb_writer.h),
+// LinearMovementProjectiveConstraint.inl and EulerImplicitSolver.cpp; MuJoCo XML reference,
+// flexcomp; USD 24.08, UsdGeomTetMesh, UsdGeomSubset and UsdPhysics. The deformable body follows
+// the proposal "Deformable Body Physics in USD" (pull request 111 of
+// PixarAnimationStudios/OpenUSD-proposals, as of commit 584939b):
 // PhysicsVolumeDeformableMaterialAPI has Young's modulus, Poisson's ratio and the density, a
 // quarter of the mass of an element belongs to each of its points as in Lacuna, and a
 // PhysicsAttachment ties the nodes of a grip to a frame. No prim has PhysicsCollisionAPI, so that

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <iterator>
+#include <vector>
 
 #include "core/error.h"
 #include "exchange/scene_writers.h"
@@ -34,8 +36,9 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
     case Kind::kNeoHookean:
       return {
           effect.name, How::kConverted,
-          "TetrahedronHyperelasticityFEMForceField, NeoHookean with mu and K = lambda + 2 mu/3: "
-          "agrees to first order in the strain"};
+          "TetrahedronHyperelasticityFEMForceField, NeoHookean with mu, lambda: mu/2 (F:F-3) - mu "
+          "ln J + lambda/2 (ln J)^2 in place of mu/2 (F:F-3) - mu (J-1) + (lambda+mu)/2 (J-1)^2; "
+          "agrees to second order in J-1"};
     case Kind::kGravity:
       return {effect.name, How::kExact, "gravity of the root node"};
     case Kind::kMassDamping:
@@ -62,7 +65,7 @@ std::string ForceField(const PortableEffect& law) {
       return fmt::format(
           "'TetrahedronHyperelasticityFEMForceField', materialName='NeoHookean', "
           "ParameterSet=[{}, {}]",
-          lame.mu, lame.lambda + 2 * lame.mu / 3);
+          lame.mu, lame.lambda);
     case Kind::kLinear:
     case Kind::kCorotational:
       return fmt::format(
@@ -92,13 +95,20 @@ std::string GripText(const PortableGrip& grip, const PortableModel& model) {
   if (grip.displacements.empty())
     return fmt::format("    body.addObject('FixedProjectiveConstraint', indices=[{}])\n",
                        fmt::join(grip.part.nodes, ", "));
+  // The constraint lets its nodes go at its last key time. The last movement is therefore repeated
+  // at a time that no simulation reaches.
+  constexpr double kNever = 1e9;  // s
+  std::vector<double> times = model.times;
+  times.push_back(kNever);
   std::string movements;
-  for (const Eigen::Matrix3Xd& at : grip.displacements)
-    fmt::format_to(std::back_inserter(movements), "[{}, {}, {}], ", at(0, 0), at(1, 0), at(2, 0));
+  for (size_t k = 0; k < times.size(); ++k) {
+    const Eigen::Vector3d at = grip.displacements[std::min(k, model.times.size() - 1)].col(0);
+    fmt::format_to(std::back_inserter(movements), "[{}, {}, {}], ", at.x(), at.y(), at.z());
+  }
   return fmt::format(
       "    body.addObject('LinearMovementProjectiveConstraint', indices=[{}],\n"
       "                   keyTimes=[{}],\n                   movements=[{}])\n",
-      fmt::join(grip.part.nodes, ", "), fmt::join(model.times, ", "), movements);
+      fmt::join(grip.part.nodes, ", "), fmt::join(times, ", "), movements);
 }
 
 std::string LoadText(const PortableLoad& load) {
@@ -126,13 +136,19 @@ Counterparts SofaCounterparts(const PortableModel& model) {
     else if (!grip.axes.IsAll())
       parts.push_back({part, How::kNone, "a motion along some axes only"});
     else if (grip.IsTranslation())
-      parts.push_back({part, How::kExact, "LinearMovementProjectiveConstraint"});
+      parts.push_back({part, How::kExact,
+                       "LinearMovementProjectiveConstraint, linear between times at most one time "
+                       "step apart; at rest after the last one"});
     else
       parts.push_back({part, How::kNone, "a motion that is not a translation"});
   }
   for (const PortableLoad& load : model.loads)
     parts.push_back({"force " + load.part.name, IsConstant(load) ? How::kExact : How::kNone,
                      IsConstant(load) ? "ConstantForceField" : "a force that changes in time"});
+  if (!model.is_static)
+    parts.push_back({"inertia", How::kConverted,
+                     "lumped masses; EulerImplicitSolver, the linearised backward Euler method, of "
+                     "first order and with numerical damping, in place of Lacuna's time scheme"});
   AddLostStart(model, &parts);
   return parts;
 }
@@ -142,6 +158,10 @@ std::string SofaText(const PortableModel& given) {
   const RayleighDamping damping = model.Damping();
   const Eigen::Vector3d gravity = model.Gravity();
   std::string text = FileComment(given, SofaCounterparts(given), "# ");
+  text += "# For SOFA 24.06 and later\n";
+  // The option trapezoidalScheme is no improvement: the positions still advance by the step times
+  // the new velocity, which is of first order, and since SOFA 25.06 an undamped vibration grows
+  // where a step is longer than 2/ω.
   text += fmt::format(
       "import os\n\n\ndef createScene(root):\n"
       "    root.gravity = [{}, {}, {}]\n    root.dt = {}\n"

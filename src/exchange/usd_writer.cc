@@ -226,6 +226,9 @@ Counterparts UsdCounterparts(const PortableModel& given) {
   for (const PortableGrip& grip : model.grips) parts.push_back(GripCounterpart(grip, model.mesh));
   for (const PortableLoad& load : model.loads)
     parts.push_back({"force " + load.part.name, How::kNone, "only its nodes are written"});
+  if (!given.is_static)
+    parts.push_back({"inertia", How::kConverted,
+                     "lumped masses; the program that reads the file chooses the time scheme"});
   AddLostStart(given, &parts);
   return parts;
 }

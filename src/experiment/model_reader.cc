@@ -44,10 +44,11 @@ std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material)
   std::vector<OwnLaw> laws;
   for (const Config& item : config.Items("candidates")) {
     const std::string type = item.Text("type");
-    if (FindEntry(type) != nullptr && FindEntry(type)->make != nullptr)
-      item.Fail("type", fmt::format("a diagnosis tries {} anyway; candidates are user-defined laws "
-                                    "of type expression",
-                                    type));
+    if (const CatalogueEntry* entry = FindEntry(type); entry != nullptr && !entry->is_own_law)
+      item.Fail("type", fmt::format("{}; candidates are user-defined laws of type expression",
+                                    entry->make != nullptr
+                                        ? fmt::format("a diagnosis tries {} anyway", type)
+                                        : fmt::format("a diagnosis cannot try {}", type)));
     const OwnLaw law{item.Text("name", ""), MakeEffect(item, material)};
     if (!Expression::IsName(law.name))
       item.Fail("name", "must consist of letters, digits and underscores");

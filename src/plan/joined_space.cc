@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "diagnosis/projected_hypotheses.h"
 #include "scan/random_bits.h"
 
 namespace lacuna {
@@ -33,6 +34,39 @@ Eigen::VectorXd DrawNormal(const Eigen::MatrixXd& precision, const Eigen::Vector
     amounts[k] = along[k] / value + normal / std::sqrt(value);
   }
   return unit.asDiagonal() * (eigen.eigenvectors() * amounts);
+}
+
+// The space of the planned recording alone, with the columns of `now`, after the planned
+// recording's own columns have been integrated out. It has no measurements.
+HypothesisSpace PlannedSpace(const HypothesisSpace& now, const PlannedColumns& planned) {
+  const Eigen::Index base = static_cast<Eigen::Index>(now.base.size());
+  const Eigen::Index all = now.model.toward().size();
+  const Eigen::Index rows = planned.parameters.rows(), own = planned.own.cols();
+  CHECK_LE(planned.parameters.cols(), base);
+  CHECK_EQ(planned.variants.cols(), all - base);
+  CHECK_EQ(own, static_cast<Eigen::Index>(planned.own_priors.size()));
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(rows, own + all);
+  if (own > 0) columns.leftCols(own) = planned.own;
+  columns.middleCols(own, planned.parameters.cols()) = planned.parameters;
+  columns.rightCols(all - base) = planned.variants;
+  std::vector<LinearPrior> priors = planned.own_priors;
+  priors.insert(priors.end(), now.model.priors().begin(), now.model.priors().end());
+  const HypothesisSpace with_own = MakeHypothesisSpace(
+      Eigen::VectorXd::Zero(rows), columns, std::move(priors), own, {}, now.variance, rows);
+  HypothesisSpace space = ProjectedHypotheses(with_own).Marginal();
+  space.model = LinearGaussianModel::FromProducts(
+      0, Eigen::VectorXd::Zero(all), space.model.products().bottomRightCorner(all, all),
+      now.model.priors());
+  return space;
+}
+
+HypothesisSpace SumOf(const HypothesisSpace& now, const HypothesisSpace& planned) {
+  HypothesisSpace joined = now;
+  joined.model = LinearGaussianModel::FromProducts(now.model.squares(), now.model.toward(),
+                                                   now.model.products() + planned.model.products(),
+                                                   now.model.priors());
+  joined.rows += planned.rows;
+  return joined;
 }
 
 }  // namespace
@@ -63,48 +97,10 @@ HypothesisSpace SpaceOfRivals(const HypothesisSpace& space,
 }
 
 JoinedSpace::JoinedSpace(const HypothesisSpace& now, const PlannedColumns& planned)
-    : now_(now), own_(planned.own.cols()) {
-  const Eigen::Index base = static_cast<Eigen::Index>(now.base.size());
-  const Eigen::Index all = now.model.toward().size();
-  const Eigen::Index rows = planned.parameters.rows();
-  CHECK_LE(planned.parameters.cols(), base);
-  CHECK_EQ(planned.variants.cols(), all - base);
-  CHECK_EQ(planned.own.cols(), static_cast<Eigen::Index>(planned.own_priors.size()));
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(rows, all + own_);
-  columns.leftCols(planned.parameters.cols()) = planned.parameters;
-  if (own_ > 0) columns.middleCols(base, own_) = planned.own;
-  columns.rightCols(all - base) = planned.variants;
-  std::vector<LinearPrior> priors = now.model.priors();
-  priors.insert(priors.begin() + base, planned.own_priors.begin(), planned.own_priors.end());
-  std::vector<WeighedHypothesis> hypotheses = now.hypotheses;
-  for (WeighedHypothesis& hypothesis : hypotheses)
-    for (int& column : hypothesis.columns) column += static_cast<int>(own_);
-  planned_ = MakeHypothesisSpace(Eigen::VectorXd::Zero(rows), columns, priors, base + own_,
-                                 std::move(hypotheses), now.variance, rows);
-  noise_.emplace(planned_);
-  joined_ = planned_;
-  joined_.rows += now.rows;
-  Eigen::VectorXd toward = Eigen::VectorXd::Zero(all + own_);
-  toward.head(base) = now.model.toward().head(base);
-  toward.tail(all - base) = now.model.toward().tail(all - base);
-  Eigen::MatrixXd products = planned_.model.products();
-  const auto add = [&](Eigen::Index to_row, Eigen::Index to_column, Eigen::Index row,
-                       Eigen::Index column, Eigen::Index height, Eigen::Index width) {
-    products.block(to_row, to_column, height, width) +=
-        now.model.products().block(row, column, height, width);
-  };
-  add(0, 0, 0, 0, base, base);
-  add(0, base + own_, 0, base, base, all - base);
-  add(base + own_, 0, base, 0, all - base, base);
-  add(base + own_, base + own_, base, base, all - base, all - base);
-  joined_.model = LinearGaussianModel::FromProducts(now.model.squares(), std::move(toward),
-                                                    std::move(products), std::move(priors));
-}
-
-FoundEffect JoinedSpace::InJoined(FoundEffect found) const {
-  for (int& column : found.columns) column += static_cast<int>(own_);
-  return found;
-}
+    : now_(now),
+      planned_(PlannedSpace(now, planned)),
+      joined_(SumOf(now, planned_)),
+      noise_(planned_) {}
 
 Eigen::VectorXd JoinedSpace::DrawToward(const FoundEffect& truth, uint64_t seed,
                                         uint64_t number) const {
@@ -117,18 +113,15 @@ Eigen::VectorXd JoinedSpace::DrawToward(const FoundEffect& truth, uint64_t seed,
       precision(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) +=
           1 / (deviation * deviation);
   }
-  // r + A δ is noise, so that the mean of δ solves P δ = −Aᵀr / v.
+  // r + A δ is noise, so that the mean of δ solves (AᵀA / v + diag s⁻²) δ = −Aᵀr / v.
   Eigen::VectorXd amounts =
       DrawNormal(precision, -now_.model.toward()(known) / now_.variance, seed, 2 * number);
   for (size_t k = 0; k < known.size(); ++k) {
     double& amount = amounts[static_cast<Eigen::Index>(k)];
     if (now_.model.Prior(known[k]).positive) amount = std::max(amount, 0.0);
   }
-  std::vector<int> in_joined = now_.base;
-  for (const int column : truth.columns) in_joined.push_back(column + static_cast<int>(own_));
-  const Eigen::VectorXd noise = noise_->Draw(seed, 2 * number + 1).toward;
-  return joined_.model.toward() + noise -
-         planned_.model.products()(Eigen::all, in_joined) * amounts;
+  return joined_.model.toward() + noise_.Draw(seed, 2 * number + 1).toward -
+         planned_.model.products()(Eigen::all, known) * amounts;
 }
 
 }  // namespace lacuna

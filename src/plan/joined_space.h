@@ -1,16 +1,20 @@
 // The space of a diagnosis joined by a planned recording, which has no measurements yet.
 //
-// The rows of the planned recording follow those of the run. With the columns A of the run and A_p
-// of the planned recording, the products of both are AᵀA + A_pᵀA_p. The parameters of the model and
-// the sizes of the effects are the same in both; the errors of the mesh, the step, the shape and
-// the registration are taken to be new ones in the planned recording, which makes its predictions
-// rather too cautious where they are the same.
+// Let r and A be the residual and the columns of the run, r_p and A_p the same of the planned
+// recording, and v the variance of the noise. The parameters of the model and the sizes of the
+// effects are the same in both recordings. The errors of the mesh, the step, the shape, the grips
+// and the hand that holds the object are taken to be new ones in the planned recording, with
+// amounts from their priors, which makes its predictions rather too cautious where they are the
+// same. With their columns B and their prior covariance P,
+//   r_p + A_p δ ~ N(0, C),   C = v I + B P Bᵀ,
+// so that the products of the planned recording, after the amounts of B have been integrated out
+// (projected_hypotheses.h), are S = v A_pᵀC⁻¹A_p and v A_pᵀC⁻¹r_p, and those of both recordings
+//   AᵀA + S   and   Aᵀr + v A_pᵀC⁻¹r_p.
 #ifndef LACUNA_PLAN_JOINED_SPACE_H_
 #define LACUNA_PLAN_JOINED_SPACE_H_
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,23 +37,23 @@ struct PlannedColumns {
 
 class JoinedSpace {
  public:
-  // `now`: a SpaceOfRivals(), in whose base the parameters of the model come first. Columns of a
-  // joined space: the base of `now`, the planned recording's own ones, the variants.
+  // `now`: a SpaceOfRivals(), in whose base the parameters of the model come first. CHECKs the
+  // sizes.
   JoinedSpace(const HypothesisSpace& now, const PlannedColumns& planned);
 
-  const HypothesisSpace& now() const { return now_; }
+  // The base, the columns and the hypotheses of `now`, with the products of both recordings; the
+  // residual is that of the run alone.
   const HypothesisSpace& joined() const { return joined_; }
-  FoundEffect InJoined(FoundEffect found) const;  // of now(), with the columns of joined()
 
-  // The products of the residual of both recordings, where the planned one is drawn at random as
-  // it would be if the effect were missing, given what the recordings of the run say: the amounts
-  // of the base and of the effect are drawn from their posterior, then the noise.
+  // Aᵀr + v A_pᵀC⁻¹r_p for a planned recording that is drawn at random as it would be if the effect
+  // were missing, given what the recordings of the run say. The amounts δ of the base and of the
+  // effect are drawn from their posterior, and those of B from their prior:
+  //   v A_pᵀC⁻¹r_p = n − S δ,   n ~ N(0, v S).
   Eigen::VectorXd DrawToward(const FoundEffect& truth, uint64_t seed, uint64_t number) const;
 
  private:
   HypothesisSpace now_, planned_, joined_;
-  std::optional<NoiseDraws> noise_;  // of the planned recording
-  Eigen::Index own_ = 0;
+  NoiseDraws noise_;  // n
 };
 
 }  // namespace lacuna

@@ -76,13 +76,15 @@ PlanRecord RunPlan(const std::filesystem::path& run,
   SayWhere(tried, &plan.outcomes);
   const std::filesystem::path folder = PlanFile(run).parent_path();
   MakeFolder(folder);
+  // First without the experiment, because its files may fail to be written.
+  WritePlanFile(plan, PlanFile(run));
   if (PlannedOutcome& best = plan.outcomes.front(); best.IsPlayable()) {
     const Protocol& protocol = Named(best.name, tried.protocols);
-    best.experiment = (FolderOf(protocol) / "experiment.yaml").string();
     WritePlannedExperiment(fitted, diagnosis->record.time_step, protocol,
                            folder / FolderOf(protocol));
+    best.experiment = (FolderOf(protocol) / "experiment.yaml").string();
+    WritePlanFile(plan, PlanFile(run));
   }
-  WritePlanFile(plan, PlanFile(run));
   return plan;
 }
 

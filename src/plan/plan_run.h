@@ -18,7 +18,8 @@ std::filesystem::path PlanFile(const std::filesystem::path& run);
 // both (one of the file replaces a stock one of its name), and writes plan.json and the files of
 // the best one (planned_experiment.h). The reason why a protocol of the file cannot be played
 // begins with its position there. Throws InputError when the run is not fitted or not diagnosed,
-// when nothing is left to be decided, and for errors in `protocols`; Interrupted.
+// when nothing is left to be decided, for errors in `protocols`, and when the files of the best one
+// cannot be written: plan.json is kept then, without the name of its experiment. Interrupted.
 PlanRecord RunPlan(const std::filesystem::path& run,
                    const std::optional<std::filesystem::path>& protocols, Progress* progress);
 

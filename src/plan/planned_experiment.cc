@@ -83,7 +83,7 @@ void WriteProtocol(const FittedRun& fitted, const PredictionStudy& study, const 
   std::vector<std::string> effects;
   for (size_t k = 1; k < fixed.size(); ++k) effects.push_back(Written(*fixed[k]));
   const double density = DensityWith(study.effects, study.density);
-  std::vector<YamlChange> changes = {{"name", fmt::format("\"{}\"", FileNameFor(entry.name)), {}},
+  std::vector<YamlChange> changes = {{"name", QuotedText(FileNameFor(entry.name)), {}},
                                      {"output", "simulated", {}},
                                      {"density", fmt::format("{} kg/m^3", density), {}},
                                      {"material", Written(*fixed.front()), {}},
@@ -104,12 +104,11 @@ void WriteProtocol(const FittedRun& fitted, const PredictionStudy& study, const 
 void WriteJointExperiment(const FittedRun& fitted, const Entry& entry, const fs::path& file) {
   const std::string name = fmt::format("{}+{}", fitted.study.name, FileNameFor(entry.name));
   const fs::path output = fs::absolute(fitted.study.output).lexically_normal().parent_path() / name;
-  const std::vector<YamlChange> changes = {
-      {"name", fmt::format("\"{}\"", name), {}},
-      {"output",
-       output.lexically_proximate(fs::absolute(file.parent_path()).lexically_normal()).string(),
-       {}},
-      {"recordings[+]", FormatEntry(entry), {}}};
+  const fs::path from_file =
+      output.lexically_proximate(fs::absolute(file.parent_path()).lexically_normal());
+  const std::vector<YamlChange> changes = {{"name", QuotedText(name), {}},
+                                           {"output", QuotedText(from_file.string()), {}},
+                                           {"recordings[+]", FormatEntry(entry), {}}};
   WriteFileAtomically(
       file,
       fmt::format("# The experiment {0} with one more recording. Make it as {1}/recording.yaml\n"

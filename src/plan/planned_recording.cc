@@ -37,6 +37,7 @@ std::vector<RecordedGrip> AsGrips(const RecordedObject& object, double first, do
     RecordedGrip grip;
     grip.region = support.region;
     grip.axes = support.axes;
+    grip.placement = support.placement;
     grip.motion = GripMotion::kGiven;
     grip.times = Eigen::Vector2d(first, last);
     grip.displacements = Eigen::Matrix3Xd::Zero(3, 2);
@@ -125,6 +126,17 @@ Markers PlannedMarkers(const PredictedRecording& item, const std::vector<double>
   return markers;
 }
 
+// The first of new1, new2, … that is not among `names`: a recording with more markers may have been
+// planned itself.
+std::string UnusedMarkerName(const std::vector<std::string>& names) {
+  std::string name;
+  int number = 0;
+  do {
+    name = fmt::format("new{}", ++number);
+  } while (std::find(names.begin(), names.end(), name) != names.end());
+  return name;
+}
+
 // Adds markers at nodes of the surface that no grip holds, each as far as possible from all others.
 void AddMarkers(int count, const TetMesh& mesh, const std::vector<RecordedGrip>& grips,
                 Markers* markers) {
@@ -154,7 +166,7 @@ void AddMarkers(int count, const TetMesh& mesh, const std::vector<RecordedGrip>&
     const int best = static_cast<int>(std::max_element(away.begin(), away.end()) - away.begin());
     take(best);
     markers->places.col(before + k) = points[static_cast<size_t>(best)];
-    markers->names.push_back(fmt::format("new{}", k + 1));
+    markers->names.push_back(UnusedMarkerName(markers->names));
   }
   for (Eigen::Matrix3Xd& positions : markers->positions) {
     positions.conservativeResize(Eigen::NoChange, before + count);

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "calibration/linear_misfit.h"
@@ -195,11 +196,13 @@ void Planner::Predict(const JoinedSpace& space, PlannedOutcome* outcome) const {
   const HypothesisSpace& joined = space.joined();
   const ProjectedHypotheses beside(joined), beside_now(now_);
   const std::map<std::string, double> before = EvidenceIn(now_, beside_now, now_.model.toward());
-  std::vector<HypothesisProbability> kept;  // nothing, and the rivals
-  for (const HypothesisProbability& one : run_.diagnosis.decision.probabilities)
-    if (one.kind == Kind::kNothing ||
-        (one.kind == Kind::kEffect && before.count(one.names.front()) > 0))
-      kept.push_back(one);
+  std::vector<HypothesisProbability> kept;  // nothing, and the rivals, without nuisances
+  for (const HypothesisProbability& one : run_.diagnosis.decision.probabilities) {
+    const bool is_rival = one.kind == Kind::kEffect && before.count(one.names.front()) > 0;
+    if (one.kind != Kind::kNothing && !is_rival) continue;
+    kept.push_back(one);
+    if (is_rival) kept.back().names.resize(1);
+  }
   for (size_t k = 0; k < found_.size(); ++k) {
     int right = 0;
     for (int draw = 0; draw < kDraws; ++draw) {
@@ -219,10 +222,8 @@ void Planner::Predict(const JoinedSpace& space, PlannedOutcome* outcome) const {
     outcome->named.push_back(static_cast<double>(right) / kDraws);
     outcome->probability += record_->rivals[k].probability * outcome->named.back();
   }
-  std::vector<FoundEffect> found_then;
-  for (const FoundEffect& effect : found_) found_then.push_back(space.InJoined(effect));
   const std::vector<RecordedSeparation> now = SeparationsOf(now_, found_);
-  const std::vector<RecordedSeparation> then = SeparationsOf(joined, found_then);
+  const std::vector<RecordedSeparation> then = SeparationsOf(joined, found_);
   for (size_t k = 0; k < now.size(); ++k)
     outcome->pairs.push_back({now[k].first, now[k].second, now[k].lambda, then[k].lambda});
   const Eigen::VectorXd projected_now = beside_now.Project(now_.model.toward());
@@ -270,6 +271,7 @@ std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis) {
     const HypothesisProbability& one = all[k];
     if (one.kind != Kind::kEffect && one.kind != Kind::kPair) continue;
     for (const std::string& name : one.names) {
+      if (IsNuisance(all, name)) continue;  // beside the effects
       if (probability.try_emplace(name, 0.0).second) order.push_back(name);
       if (one.kind == Kind::kEffect) probability[name] += one.probability;
     }
@@ -291,12 +293,16 @@ PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protoc
   record.verdict = VerdictWithNames(run.diagnosis);
   const std::vector<HypothesisProbability>& all = run.diagnosis.decision.probabilities;
   record.rivals = RivalsOf(run.diagnosis);
-  size_t kept = 0;
+  std::set<std::vector<std::string>> kept;  // by their effects, where they have any
   for (const size_t k : NameFrom(all).kept) {
-    ++kept;
-    if (all[k].kind == Kind::kNuisance) record.also_left.push_back(all[k].names.front());
+    std::vector<std::string> names = all[k].names;
+    if (all[k].kind == Kind::kNuisance)
+      record.also_left.push_back(names.front());
+    else
+      std::erase_if(names, [&](const std::string& name) { return IsNuisance(all, name); });
+    kept.insert(std::move(names));
   }
-  if (record.rivals.empty() || kept < 2)
+  if (record.rivals.empty() || kept.size() < 2)
     throw InputError(fmt::format(
         "the diagnosis of {} has left no rivals: there is nothing that a further recording would "
         "have to decide",

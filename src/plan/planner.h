@@ -4,10 +4,10 @@
 // parameters and of all rivals on the recording that it would make. Joined to the products that the
 // diagnosis has kept (joined_space.h), it tells how far the rivals would be apart, how well their
 // sizes would be known, and, by simulated recordings, how often the right one would be named. A
-// simulated recording is drawn as it would be if a rival were missing, with everything that is not
-// known drawn from its posterior; the evidence of each rival then grows by the difference of its
-// log Bayes factors with and without the planned recording, and the rules of the diagnosis decide
-// (decision_rules.h).
+// simulated recording is drawn as it would be if a rival were missing: the size of the rival and
+// the parameters from their posterior, the errors that are new in the planned recording from their
+// priors. The evidence of each rival then grows by the difference of its log Bayes factors with and
+// without the planned recording, and the rules of the diagnosis decide (decision_rules.h).
 #ifndef LACUNA_PLAN_PLANNER_H_
 #define LACUNA_PLAN_PLANNER_H_
 

@@ -11,7 +11,8 @@
 #include "exchange/portable_model.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
-#include "scan/test_files.h"
+#include "support/shared_data.h"
+#include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {

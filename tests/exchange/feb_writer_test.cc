@@ -72,6 +72,21 @@ TEST(FebWriter, NamesWhatHasNoCounterpart) {
   EXPECT_THAT(FebText(model), HasSubstr("<pt>40,1</pt>"));
 }
 
+// FEBio's material has g1 to g6.
+TEST(FebWriter, NamesTheBranchesThatAreTooMany) {
+  Cantilever bar = Bar();
+  for (int k = 1; k <= 7; ++k)
+    bar.model.effects.push_back(
+        MakeEffect("viscoelastic_branch",
+                   {{"modulus", 1e4 * k}, {"relaxation_time", 0.01 * k}, {"poisson_ratio", 0.4}}));
+  const PortableModel model = bar.Describe();
+  EXPECT_THAT(MissingParts(model), ElementsAre("viscoelastic_branch"));
+  EXPECT_EQ(FebCounterparts(model).at(7).kind, Counterpart::Kind::kConverted);  // the sixth
+  EXPECT_EQ(FebCounterparts(model).at(8).kind, Counterpart::Kind::kNone);
+  EXPECT_THAT(FebText(model), HasSubstr("<g6>0.6</g6>"));
+  EXPECT_THAT(FebText(model), Not(HasSubstr("<g7>")));
+}
+
 PortableModel Everything(const std::string& law, int order) {
   Cantilever bar = LoadedCantilever(law, order);
   bar.model.effects.push_back(

@@ -65,10 +65,61 @@ TEST(ImportedExperiment, ConvertsMillimetres) {
   EXPECT_EQ(si.materials[0].poisson_ratio, 0.45);
 }
 
-TEST(ImportedExperiment, OverwritesNothingAndSaysWhatIsUnknown) {
-  TemporaryFolder folder;
+ImportedModel ABox() {
   ImportedModel model;
   model.mesh = BoxMesh({0, 0, 0}, {0.08, 0.02, 0.02}, {1, 1, 1});
+  return model;
+}
+
+// The experiment "recording" would be the file that describes the recording; a name that begins
+// with a dot is refused when the experiment is read.
+TEST(ImportedExperiment, RefusesNamesThatAnExperimentCannotHave) {
+  TemporaryFolder folder;
+  for (const char* name : {"recording", ".bar", "a\\b", "a\nb"}) {
+    EXPECT_THAT(
+        [&] {
+          WriteImportedExperiment(ABox(), name, std::string(name) + ".inp", folder / "study");
+        },
+        testing::ThrowsMessage<InputError>(HasSubstr("the experiment is named after the file")))
+        << name;
+    EXPECT_FALSE(std::filesystem::exists(folder / "study")) << name;
+  }
+}
+
+// The names that InpText takes for itself are free here.
+TEST(ImportedExperiment, KeepsTheNamesOfSetsWhereItCan) {
+  TemporaryFolder folder;
+  ImportedModel model = ABox();
+  model.node_sets = {{"BODY", {0}}, {"ALL_NODES", {1}}, {"52 G", {2}}};
+  const std::vector<std::string> written =
+      WriteImportedExperiment(model, "box", "box.inp", folder / "study");
+  EXPECT_THAT(written,
+              testing::IsSupersetOf({"nodes_BODY.txt", "nodes_ALL_NODES.txt", "nodes_N_52_G.txt"}));
+  const std::string recording = FileContent(folder / "study/recording.yaml");
+  EXPECT_THAT(recording, HasSubstr("#   - {name: BODY, nodes_file: nodes_BODY.txt}\n"));
+  EXPECT_THAT(recording, HasSubstr("nodes_file: nodes_N_52_G.txt}   # 52 G in the file\n"));
+}
+
+// A line break in a comment would end it.
+TEST(ImportedExperiment, WritesNoLineOfTheFilesOwn) {
+  TemporaryFolder folder;
+  ImportedModel model = ABox();
+  model.materials = {{"GEL", 1e5, 0.45, 1000.0}, {"b\nmesh: {}", {}, {}, {}}};
+  model.not_read = {"line 3: *A\rdensity: 1 kg/m^3"};
+  WriteImportedExperiment(model, "box", "box.in\rname: x\np", folder / "study");
+  for (const char* file : {"recording.yaml", "box.yaml"}) {
+    const std::string text = FileContent(folder / "study" / file);
+    EXPECT_THAT(text, HasSubstr("# Made from box.in name: x p. "));
+    EXPECT_THAT(text, testing::Not(HasSubstr("\r")));
+    EXPECT_NO_THROW(Config::Parse(text, file).Text("name"));
+  }
+  EXPECT_THAT(FileContent(folder / "study/box.yaml"),
+              HasSubstr("# The file has another material, b mesh: {}, which is not used\n"));
+}
+
+TEST(ImportedExperiment, OverwritesNothingAndSaysWhatIsUnknown) {
+  TemporaryFolder folder;
+  ImportedModel model = ABox();
   model.not_read = {"line 3: *BOUNDARY"};
   WriteImportedExperiment(model, "a: b", "a.inp", folder / "study");
   const std::string experiment = FileContent(folder / "study/a: b.yaml");

@@ -162,6 +162,45 @@ TEST(InpReader, RefusesControlCharactersInNames) {
   EXPECT_EQ(Read(Replaced(kTet, "name=Gel", "\tname=Gel\r")).materials[0].name, "GEL");
 }
 
+// The form of Abaqus for the nodes of an element set, which has no data lines.
+TEST(InpReader, ReadsTheNodesOfAnElementSet) {
+  const auto with = [](const std::string& lines) {
+    return Replaced(kTet, "*Material", lines + "\n*Material");
+  };
+  const ImportedModel model = Read(with("*Nset, nset=whole, elset=soft, internal"));
+  ASSERT_EQ(model.node_sets.size(), 4u);
+  EXPECT_EQ(model.node_sets[3].name, "WHOLE");
+  EXPECT_THAT(model.node_sets[3].nodes, ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(ErrorOf(with("*Nset, nset=whole, elset=hard")),
+              HasSubstr(":18: there is no element set HARD above"));
+  EXPECT_THAT(ErrorOf(with("*Nset, nset=whole, elset=soft\n10")),
+              HasSubstr(":19: expected a keyword line"));
+  EXPECT_THAT(ErrorOf(with("*Nset, nset=whole, elset")), HasSubstr(":18: *NSET needs ELSET"));
+}
+
+TEST(InpReader, RefusesSetsWithParametersThatItDoesNotKnow) {
+  EXPECT_THAT(ErrorOf(Replaced(kTet, "*NSET, NSET=Both", "*NSET, NSET=Both, SURFACE=S")),
+              HasSubstr(":14: *NSET with SURFACE is not read"));
+  EXPECT_THAT(ErrorOf(Replaced(kTet, "ELSET=E2", "ELSET=E2, NSET=Both")),
+              HasSubstr(":16: *ELSET with NSET is not read"));
+  EXPECT_EQ(
+      Read(Replaced(kTet, "ELSET=E2", "ELSET=E2, instance=Part-1, unsorted")).element_sets.size(),
+      2u);
+}
+
+TEST(InpReader, NotesSetsThatAreEmpty) {
+  const ImportedModel model = Read(Replaced(kTet, "*Material", "*Nset, nset=none\n*Material"));
+  EXPECT_EQ(model.node_sets.size(), 3u);
+  EXPECT_THAT(model.notes, ElementsAre("set NONE: it is empty and was left out"));
+  // Elements of other types are not read, so that what refers to them is empty.
+  const ImportedModel shells =
+      Read(Replaced(kTet, "*Material",
+                    "*ELEMENT, TYPE=S3, ELSET=skin\n8, 10, 20, 30\n*ELSET, ELSET=E3\n8\n"
+                    "*NSET, NSET=of_skin, ELSET=skin\n*Material"));
+  EXPECT_THAT(shells.notes, ElementsAre("set OF_SKIN: it is empty and was left out",
+                                        "set E3: it is empty and was left out"));
+}
+
 TEST(InpReader, GeneratesWithAStepThatSkipsNumbers) {
   const auto foot = [](const std::string& range) {
     return Read(Replaced(kTet, "10, 30, 10", range)).node_sets[1].nodes;

@@ -5,10 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "core/error.h"
 #include "exchange/cantilever.h"
+#include "exchange/described_run.h"
 #include "exchange/export_format.h"
 #include "exchange/inp_reader.h"
 #include "geometry/shape_functions.h"
@@ -157,10 +159,35 @@ TEST(InpWriter, SaysWhereGravityAndDensityAreConverted) {
   }
   const InpDialect lumped = InpDialect::kCalculixPointMasses;
   EXPECT_EQ(kind(quadratic, lumped, "gravity"), Counterpart::Kind::kExact);
+  linear.frames = {0.1};
   EXPECT_EQ(kind(linear, lumped, "density"), Counterpart::Kind::kNone);  // a part of the inertia
   linear.is_static = true;
   EXPECT_EQ(kind(linear, lumped, "density"), Counterpart::Kind::kConverted);
   EXPECT_EQ(kind(linear, InpDialect::kCalculix, "density"), Counterpart::Kind::kNone);
+}
+
+// Without a frame the file ends with the equilibrium, so that its comment names no *DYNAMIC either.
+TEST(InpWriter, SaysNothingOfInertiaWithoutAMotion) {
+  Cantilever bar("linear", {2, 1, 1}, 1);
+  for (const InpDialect dialect : {InpDialect::kCalculix, InpDialect::kCalculixPointMasses}) {
+    bar.frames = {0.1};
+    EXPECT_THAT(InpText(bar.Describe(), dialect), HasSubstr("** inertia: converted: "));
+    bar.frames.clear();
+    EXPECT_THAT(InpText(bar.Describe(), dialect), Not(HasSubstr("*DYNAMIC")));
+  }
+}
+
+TEST(FramesUntil, KeepsFramesOnTheModelsClockAndRefusesToLoseTheWholeMotion) {
+  const std::vector<double> times = {0, 1, 2, 3};  // recorded half a second late
+  EXPECT_THAT(FramesUntil(2, times, 0.5, 1), ElementsAre(-0.5, 0.5, 1.5));
+  EXPECT_THAT(FramesUntil(INFINITY, times, 0.5, 1), ElementsAre(-0.5, 0.5, 1.5, 2.5));
+  for (const double until : {-1.0, 1.9})
+    EXPECT_THAT([&] { FramesUntil(until, times, 0.5, 1); },
+                testing::ThrowsMessage<InputError>(
+                    HasSubstr("leaves nothing of the motion, whose first frame is at 2 s")));
+  // A recording of the equilibrium alone has no motion to lose.
+  EXPECT_THAT(FramesUntil(INFINITY, {1}, 0, 1), ElementsAre(1));
+  EXPECT_THAT(FramesUntil(0, {1}, 0, 1), IsEmpty());
 }
 
 TEST(InpWriter, MakesNamesOfSetsThatAreValidAndUnique) {

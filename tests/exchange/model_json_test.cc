@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/config.h"
+#include "effects/effect_text.h"
 #include "effects/uniform_density.h"
 #include "exchange/cantilever.h"
 #include "exchange/export_format.h"
@@ -158,6 +160,30 @@ TEST(ModelJson, HoldsEveryEffectWithAllDigits) {
             model.grips[0].part.nodes);
   EXPECT_EQ(json.at("force_before_the_start").size(), static_cast<size_t>(bar.mesh.NodeCount()));
   EXPECT_EQ(json.at("density"), 1000);
+}
+
+// What is written with expressions is in their parameters only in part: the mapping makes the same
+// effect again.
+TEST(ModelJson, HoldsTheExpressionsOfAnEffect) {
+  Cantilever bar("neo_hookean", {2, 1, 1}, 1);
+  for (const char* yaml :
+       {"{type: swelling_field, strain: 0.1 %, field: \"1 + Z/0.02\"}",
+        "{type: expression, name: magnet, per: mass, force: [0, 0, \"-k * z/0.01\"], parameters: "
+        "{k: {value: 3 N/kg, plausible: [0 N/kg, 10 N/kg]}}}"})
+    bar.model.effects.push_back(MakeEffect(Config::Parse(yaml, "a.yaml")));
+  const PortableModel model = bar.Describe();
+  EXPECT_TRUE(Missing(JsonCounterparts(model)).empty());
+  const auto json = nlohmann::json::parse(ModelJson(model, "model.msh").dump());
+  EXPECT_FALSE(json.at("effects").at(1).contains("yaml"));
+  for (const size_t k : {2u, 3u}) {
+    const nlohmann::json& effect = json.at("effects").at(k);
+    const std::string yaml = effect.at("yaml");
+    const auto again = MakeEffect(Config::Parse(yaml, "b.yaml"));
+    EXPECT_EQ(FormatEffect(*again), FormatEffect(*bar.model.effects[k]));
+    EXPECT_EQ(effect.at("parameters").front().get<double>(), again->Parameters()[0]);
+  }
+  EXPECT_THAT(json.at("effects").at(2).at("yaml").get<std::string>(),
+              testing::HasSubstr("1 + Z/0.02"));
 }
 
 TEST(ModelJson, HasTheDensityThatWasFitted) {

@@ -5,10 +5,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "exchange/cantilever.h"
@@ -68,6 +73,65 @@ TEST(SofaWriter, WritesTheLawAndNamesWhatIsMissing) {
   EXPECT_THAT(text, HasSubstr("    # pull\n    body.addObject('ConstantForceField'"));
 }
 
+// The numbers of the list that follows `key` in its line.
+std::vector<double> NumbersBehind(const std::string& key, const std::string& text) {
+  const size_t at = text.find(key);
+  EXPECT_NE(at, std::string::npos) << key;
+  if (at == std::string::npos) return {};
+  std::string list = text.substr(at + key.size(), text.find('\n', at) - at - key.size());
+  std::replace_if(
+      list.begin(), list.end(), [](char letter) { return std::strchr("[],)", letter) != nullptr; },
+      ' ');
+  std::istringstream stream(list);
+  return {std::istream_iterator<double>(stream), {}};
+}
+
+// SOFA's law is μ/2 (F:F − 3) − μ ln J + λ/2 (ln J)²: its second parameter is λ, not the bulk
+// modulus. μ = 1e5/2.8, λ = 1e5·0.4/(1.4·0.2).
+TEST(SofaWriter, GivesTheNeoHookeanLawItsLameConstants) {
+  const PortableModel model = Cantilever("neo_hookean", {2, 1, 1}, 1).Describe();
+  const std::string text = SofaText(model);
+  const std::vector<double> constants =
+      NumbersBehind("materialName='NeoHookean', ParameterSet=", text);
+  ASSERT_EQ(constants.size(), 2u);
+  EXPECT_NEAR(constants[0], 1e5 / 2.8, 1e-9);  // Pa, rounding
+  EXPECT_NEAR(constants[1], 1e5 * 0.4 / (1.4 * 0.2), 1e-9);
+  // So the energies differ by less than their third-order terms: in a uniform stretch by s, F:F =
+  // 3 s² and J = s³. A second parameter that is off by 2/3 μ makes 3 μ e², of second order in e.
+  for (const double stretch : {1 - 1e-3, 1 + 1e-3}) {
+    const double mu = constants[0], lambda = constants[1];
+    const double volume = std::pow(stretch, 3), log = std::log(volume);
+    const double invariant = 1.5 * mu * (stretch * stretch - 1);
+    const double sofa = invariant - mu * log + lambda / 2 * log * log;
+    const double lacuna =
+        invariant - mu * (volume - 1) + (lambda + mu) / 2 * (volume - 1) * (volume - 1);
+    EXPECT_NEAR(sofa, lacuna, 20 * (lambda + mu) * 1e-9);  // 13.5 λ e³ and 9 μ e³ at most
+  }
+}
+
+// A constraint of SOFA lets its nodes go at the last key time, and at once where it has one only.
+TEST(SofaWriter, HoldsAGripAfterItsMotion) {
+  Cantilever bar = LoadedCantilever("linear", 1);
+  for (const bool moves : {true, false}) {
+    if (!moves) bar.frames.clear();
+    const PortableModel model = bar.Describe();
+    ASSERT_EQ(model.times.size(), moves ? 5u : 1u);
+    const std::string text = SofaText(model);
+    const std::vector<double> times = NumbersBehind("keyTimes=", text),
+                              movements = NumbersBehind("movements=", text);
+    ASSERT_EQ(times.size(), model.times.size() + 1);
+    ASSERT_EQ(movements.size(), 3 * times.size());
+    for (size_t k = 0; k < model.times.size(); ++k) {
+      EXPECT_EQ(times[k], model.times[k]);
+      // The middle moves by 0.01 m/s along y.
+      EXPECT_NEAR(movements[3 * k + 1], 0.01 * model.times[k], 1e-15);
+    }
+    EXPECT_GT(times.back(), 1e6);  // s
+    for (size_t axis = 0; axis < 3; ++axis)
+      EXPECT_EQ(movements[movements.size() - 3 + axis], movements[movements.size() - 6 + axis]);
+  }
+}
+
 TEST(SofaWriter, WritesValidPython) {
   if (std::system("python3 --version >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "skipped, python3 absent";
@@ -123,7 +187,7 @@ TEST(MujocoWriter, WritesAStableTimeStep) {
                            "stiffness_damping",
                            Eigen::Vector3d(10, 1e5, 0.4),
                            {},
-                           false});
+                           {}});
   EXPECT_NEAR(MujocoTimeStep(model), 2 / (10 * frequency * frequency), 1e-12);
 }
 
@@ -268,6 +332,19 @@ TEST(UsdWriter, RefusesALawThatItCannotDescribe) {
   PortableModel model = Pulled(1).Describe();
   model.effects.front().kind = PortableEffect::Kind::kOther;
   EXPECT_THROW(UsdText(model), InputError);
+}
+
+TEST(SceneWriters, SayThatTheTimeSchemeIsAnother) {
+  const auto kind = [](const Counterparts& parts) {
+    const auto found = std::find_if(parts.begin(), parts.end(),
+                                    [](const Counterpart& part) { return part.part == "inertia"; });
+    EXPECT_NE(found, parts.end());
+    return found == parts.end() ? Counterpart::Kind::kNone : found->kind;
+  };
+  const PortableModel model = Pulled(1).Describe();
+  EXPECT_EQ(kind(SofaCounterparts(model)), Counterpart::Kind::kConverted);
+  EXPECT_EQ(kind(MujocoCounterparts(model)), Counterpart::Kind::kConverted);
+  EXPECT_EQ(kind(UsdCounterparts(model)), Counterpart::Kind::kConverted);
 }
 
 TEST(SceneWriters, NameTheHoldThatTheyLose) {

@@ -1,5 +1,6 @@
 #include "experiment/model_reader.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace lacuna {
@@ -27,6 +28,25 @@ TEST(Profile, RefusesTimesThatDoNotAscendAndUnevenLists) {
         "profile: {times: [], values: []}"}) {
     EXPECT_THROW(ReadProfile(Config::Parse(text, "a.yaml")), InputError) << text;
   }
+}
+
+std::vector<OwnLaw> Candidates(const std::string& item) {
+  return ReadCandidates(Config::Parse("candidates: [" + item + "]", "a.yaml"), nullptr);
+}
+
+// A candidate has a name of its own, which only a law of the user's writes down.
+TEST(Candidates, AreLawsOfTheUsersOwnOnly) {
+  const std::vector<OwnLaw> laws = Candidates(
+      "{type: expression, name: push, per: mass, force: [a, 0, 0], parameters: "
+      "{a: {value: 1 m/s^2, plausible: [-9 m/s^2, 9 m/s^2]}}}");
+  ASSERT_EQ(laws.size(), 1u);
+  EXPECT_EQ(laws[0].name, "push");
+  EXPECT_THAT([] { Candidates("{type: swelling_field, name: warm, strain: 0.1 %, field: \"Z\"}"); },
+              testing::ThrowsMessage<InputError>(
+                  testing::HasSubstr("a diagnosis cannot try swelling_field; candidates are")));
+  EXPECT_THAT([] { Candidates("{type: gravity, name: pull}"); },
+              testing::ThrowsMessage<InputError>(
+                  testing::HasSubstr("a diagnosis tries gravity anyway; candidates are")));
 }
 
 }  // namespace

@@ -152,6 +152,16 @@ TEST_F(RecordingScatterTest, OfMarkersIsThatOfACoordinate) {
   EXPECT_THAT(scatter.largest_in, HasSubstr("marker m"));
 }
 
+TEST_F(RecordingScatterTest, TheDeviationOfAMarkerThatLeavesItsTrackIsReported) {
+  Recording recording = Swing(0.1);
+  recording.markers.positions[60](0, 0) += 20e-3;
+  // The noise of the difference from the cubic has the deviation √70/6 σ = 0.14 mm.
+  EXPECT_NEAR(Measure(recording).farthest, 20e-3, 1e-3);
+  EXPECT_THAT(ExamineRecording(recording).scatter,
+              AllOf(HasSubstr("leave their track for a frame, by up to "),
+                    HasSubstr(" mm in a coordinate, most in frame 60, 17 %")));
+}
+
 TEST_F(RecordingScatterTest, OfThreeMarkersNoneIsCalledAnOutlier) {
   const Recording recording = Swing(0.1, 3);
   EXPECT_TRUE(std::isnan(Measure(recording).outlier_share));

@@ -13,6 +13,7 @@
 #include "analysis/measure.h"
 #include "scan/recording.h"
 #include "scan/scan_writer.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -32,7 +33,7 @@ Scene ReadEdited(const std::string& name, const Edits& edits) {
 }
 
 SceneMotion Simulate(const Scene& scene) {
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   return SimulateScene(scene, &progress);
 }
 

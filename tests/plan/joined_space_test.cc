@@ -28,70 +28,93 @@ TEST(SpaceOfRivals, KeepsTheBaseAndTheRivals) {
   EXPECT_NEAR(kept[1], factors[3], 1e-9);
 }
 
-// Two recordings, the second with one more column of its own.
+// Two recordings. The second has a column of its own, which resembles an effect and has a prior
+// that allows it an amount about as large as the noise.
 struct TwoRecordings {
   SyntheticSpace first{0.3}, second{1.5};
-  Eigen::MatrixXd own = second.Of("clock");
   HypothesisSpace now = SpaceOfRivals(first.With(SyntheticSpace::Noise(2) - 9 * first.Of("drag")),
                                       {"drag", "mass_damping"});
   PlannedColumns planned{second.columns.leftCols(SyntheticSpace::kBase),
-                         own,
-                         {{0, 3, false}},
+                         second.Of("drag") + 0.3 * second.Of("clock"),
+                         {{0, 1, false}},
                          second.columns.middleCols(SyntheticSpace::kBase, 2)};
   JoinedSpace space{now, planned};
+
+  // Of the planned recording: the columns of `now`, and the covariance matrix of its rows if all
+  // amounts but that of its own column are known.
+  Eigen::MatrixXd columns = second.columns.leftCols(SyntheticSpace::kBase + 2);
+  Eigen::MatrixXd covariance =
+      Eigen::MatrixXd::Identity(SyntheticSpace::kRows, SyntheticSpace::kRows) +
+      planned.own * planned.own.transpose();
 };
 
 TEST(JoinedSpace, HasTheProductsOfBothRecordings) {
   const TwoRecordings two;
-  constexpr Eigen::Index kRows = SyntheticSpace::kRows;
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(2 * kRows, 5);
-  columns.topLeftCorner(kRows, 2) = two.first.columns.leftCols(2);
-  columns.topRightCorner(kRows, 2) = two.first.columns.middleCols(2, 2);
-  columns.bottomRows(kRows) << two.planned.parameters, two.own, two.planned.variants;
+  const Eigen::MatrixXd first = two.first.columns.leftCols(SyntheticSpace::kBase + 2);
+  const Eigen::MatrixXd expected =
+      first.transpose() * first + two.columns.transpose() * two.covariance.llt().solve(two.columns);
   const HypothesisSpace& joined = two.space.joined();
-  EXPECT_TRUE(joined.model.products().isApprox(columns.transpose() * columns, 1e-12));
-  EXPECT_THAT(joined.base, ElementsAre(0, 1, 2));
-  EXPECT_THAT(joined.hypotheses[1].columns, ElementsAre(4));
-  EXPECT_EQ(joined.model.Prior(2).deviation, 3);
-  EXPECT_EQ(joined.rows, 2 * kRows);
-  EXPECT_EQ(joined.model.toward()[2], 0);  // no measurements yet
-  EXPECT_EQ(joined.model.toward()[3], two.now.model.toward()[2]);
-  EXPECT_THAT(two.space.InJoined(FindEffect(two.now, "drag")).columns, ElementsAre(3));
+  EXPECT_TRUE(joined.model.products().isApprox(expected, 1e-12));
+  EXPECT_THAT(joined.base, ElementsAre(0, 1));
+  EXPECT_THAT(joined.hypotheses[1].columns, ElementsAre(3));
+  EXPECT_EQ(joined.model.Prior(2).deviation, 20);
+  EXPECT_EQ(joined.rows, 2 * SyntheticSpace::kRows);
+  EXPECT_EQ(joined.model.toward(), two.now.model.toward());  // no measurements yet
 }
 
-// The mean and the covariance of the products of the planned rows alone.
+// The mean and the covariance matrix of the products of the planned recording, from those of its
+// rows.
 TEST(JoinedSpace, DrawsFromThePredictiveDistribution) {
   const TwoRecordings two;
   const FoundEffect drag = FindEffect(two.now, "drag");
   const std::vector<int> known = {0, 1, drag.columns[0]};
   Eigen::Matrix3d precision = two.now.model.products()(known, known);
   precision(2, 2) += 1.0 / (20 * 20);
-  const Eigen::Matrix3d covariance = precision.inverse();
-  const Eigen::Vector3d mean = -covariance * two.now.model.toward()(known);
-  Eigen::MatrixXd columns(SyntheticSpace::kRows, 5);
-  columns << two.planned.parameters, two.own, two.planned.variants;
-  const Eigen::MatrixXd products = columns.transpose() * columns;
-  const Eigen::MatrixXd by_amounts = products(Eigen::all, std::vector<int>{0, 1, 3});
-  const Eigen::VectorXd expected = -by_amounts * mean;
-  const Eigen::MatrixXd spread = products + by_amounts * covariance * by_amounts.transpose();
+  const Eigen::Matrix3d posterior = precision.inverse();
+  const Eigen::Vector3d mean = -posterior * two.now.model.toward()(known);
+  const Eigen::MatrixXd by_amounts = two.columns(Eigen::all, known);
+  const Eigen::MatrixXd of_rows = two.covariance + by_amounts * posterior * by_amounts.transpose();
+  const Eigen::MatrixXd from_rows = two.covariance.llt().solve(two.columns).transpose();
+  const Eigen::VectorXd expected = -from_rows * (by_amounts * mean);
+  const Eigen::MatrixXd spread = from_rows * of_rows * from_rows.transpose();
 
   constexpr int kDraws = 20000;
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(5);
-  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(5, 5);
+  constexpr int kColumns = SyntheticSpace::kBase + 2;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(kColumns);
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(kColumns, kColumns);
   for (int k = 0; k < kDraws; ++k) {
     const Eigen::VectorXd drawn =
         two.space.DrawToward(drag, 7, static_cast<uint64_t>(k)) - two.space.joined().model.toward();
     sum += drawn;
     squares += (drawn - expected) * (drawn - expected).transpose();
   }
-  for (int k = 0; k < 5; ++k) {
+  // Four standard errors and more: that of a product is at most √2 times the two deviations over
+  // √kDraws. If the amount of the own column were left out, the variance for drag would be too
+  // small by six times the tolerance.
+  for (int k = 0; k < kColumns; ++k) {
     const double deviation = std::sqrt(spread(k, k));
     EXPECT_NEAR(sum[k] / kDraws, expected[k], 4 * deviation / std::sqrt(kDraws)) << k;
-    for (int j = 0; j < 5; ++j)
+    for (int j = 0; j < kColumns; ++j)
       EXPECT_NEAR(squares(k, j) / kDraws, spread(k, j),
                   6 * deviation * std::sqrt(spread(j, j)) / std::sqrt(kDraws))
           << k << " " << j;
   }
+}
+
+// A column of its own without a prior takes everything that it can explain.
+TEST(JoinedSpace, LearnsNothingAlongAColumnWithoutAPrior) {
+  TwoRecordings two;
+  two.planned.own = two.second.Of("drag");
+  two.planned.own_priors.assign(1, LinearPrior());
+  const JoinedSpace space(two.now, two.planned);
+  const FoundEffect drag = FindEffect(two.now, "drag");
+  const int column = drag.columns[0];
+  const HypothesisSpace& joined = space.joined();
+  EXPECT_NEAR(joined.model.products()(column, column), two.now.model.products()(column, column),
+              1e-9);
+  EXPECT_EQ(joined.rows, 2 * SyntheticSpace::kRows - 1);
+  const Eigen::VectorXd drawn = space.DrawToward(drag, 7, 0);
+  EXPECT_NEAR(drawn[column], two.now.model.toward()[column], 1e-9);
 }
 
 // A second recording in which the rivals differ more tells them apart better than a repetition.
@@ -105,9 +128,7 @@ TEST(JoinedSpace, SeparatesRivalsThatThePlannedRecordingSeparates) {
   const std::vector<FoundEffect> found = {FindEffect(two.now, "drag"),
                                           FindEffect(two.now, "mass_damping")};
   const auto lambda = [&](const JoinedSpace& space) {
-    return SeparationsOf(space.joined(), {space.InJoined(found[0]), space.InJoined(found[1])})
-        .front()
-        .lambda;
+    return SeparationsOf(space.joined(), found).front().lambda;
   };
   const double now = SeparationsOf(two.now, found).front().lambda;
   EXPECT_NEAR(lambda(repeated), 2 * now, 0.02 * now);

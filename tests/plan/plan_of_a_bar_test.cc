@@ -17,6 +17,7 @@
 #include "prediction/prediction_study_reader.h"
 #include "report/plan_report.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -25,12 +26,6 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
-
-ProgressOptions Silent() {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  return silent;
-}
 
 // A recording that is too noisy for its rivals: mass damping and drag act alike.
 class PlanOfABar : public ::testing::Test {
@@ -47,7 +42,7 @@ class PlanOfABar : public ::testing::Test {
          {"noise: 0.05 mm", "noise: 0.4 mm"},
          {"max_volume: 1000 mm^3", "max_volume: 2000 mm^3, preserve_surface: false"},
          {"name: bar\n", "name: bar\noutput: run\n"}});
-    Progress silent(Silent());
+    SilentProgress silent;
     RunCalibration(ReadPredictionStudy(Config::Load(folder_ / "bar.yaml")), &silent);
     const FittedRun fitted = OpenRun(Run());
     RunDiagnosis(fitted, Run(), {}, &silent);
@@ -56,7 +51,7 @@ class PlanOfABar : public ::testing::Test {
   PlanRecord Plan(const std::vector<Protocol>& protocols) const {
     const FittedRun fitted = OpenRun(Run());
     const KeptDiagnosis kept = *FindDiagnosis(Run());
-    Progress silent(Silent());
+    SilentProgress silent;
     return MakePlan({fitted, kept.record, kept.decision}, protocols, &silent);
   }
   Protocol Named(const std::string& name) const {
@@ -100,7 +95,7 @@ class PlanOfABar : public ::testing::Test {
     std::ofstream(folder_ / "bad.yaml")
         << "schema_version: 1\nstock: false\nprotocols:\n"
            "  - {name: away, weight: {mass: 1 g, place: [1 m, 0 m, 0 m], radius: 1 cm}}\n";
-    Progress silent(Silent());
+    SilentProgress silent;
     const PlanRecord plan = RunPlan(Run(), folder_ / "bad.yaml", &silent);
     ASSERT_EQ(plan.outcomes.size(), 1u);
     EXPECT_THAT(plan.outcomes[0].message, HasSubstr("bad.yaml:4:"));
@@ -108,6 +103,19 @@ class PlanOfABar : public ::testing::Test {
     EXPECT_EQ(plan.outcomes[0].experiment, "");
     EXPECT_THAT(PlanSummary(plan), HasSubstr("The model can play none of these recordings."));
     EXPECT_THAT(PlanSummary(plan), HasSubstr("away from the object"));
+  }
+
+  // A file stands where the folder of the experiment would be.
+  void ExpectThePlanIsKeptWithoutItsExperiment() const {
+    std::ofstream(folder_ / "blocked.yaml")
+        << "schema_version: 1\nstock: false\nprotocols:\n  - {name: blocked, pull: 3}\n";
+    std::ofstream(PlanFile(Run()).parent_path() / "blocked") << "in the way";
+    SilentProgress silent;
+    EXPECT_THROW(RunPlan(Run(), folder_ / "blocked.yaml", &silent), InputError);
+    std::ifstream stream(PlanFile(Run()));
+    const nlohmann::json outcome = nlohmann::json::parse(stream).at("outcomes").at(0);
+    EXPECT_EQ(outcome.at("name"), "blocked");
+    EXPECT_EQ(outcome.at("experiment"), "");
   }
 
   TemporaryFolder folder_;
@@ -163,7 +171,7 @@ TEST_F(PlanOfABar, PrefersWhatPartsTheRivals) {
   // It is kept with the run and told in words.
   std::ofstream(folder_ / "protocols.yaml")
       << "schema_version: 1\nstock: false\nprotocols:\n  - {name: harder, pull: 3}\n";
-  Progress silent(Silent());
+  SilentProgress silent;
   const PlanRecord kept = RunPlan(Run(), folder_ / "protocols.yaml", &silent);
   std::ifstream stream(PlanFile(Run()));
   const nlohmann::json written = nlohmann::json::parse(stream);
@@ -176,6 +184,7 @@ TEST_F(PlanOfABar, PrefersWhatPartsTheRivals) {
 
   ExpectPlayable(kept);
   ExpectFailuresAreSaid();
+  ExpectThePlanIsKeptWithoutItsExperiment();
 }
 
 }  // namespace

@@ -79,6 +79,19 @@ TEST_F(PlannedRecordingOfABar, TurnsTheClampAndTheHandButNotGravity) {
   EXPECT_NEAR(PlannedHoldForce(protocol, Eigen::Vector3d(1, 0, 0)).norm(), 3, 1e-12);
 }
 
+TEST_F(PlannedRecordingOfABar, KnowsTheClampNoBetterWhereItIsMoved) {
+  RecordedObject& object = bar_.study.recordings[0].recording.object;
+  object.fixed.at(0).placement = {1e-3, 0.02};
+  Protocol turned = Named("turned"), shaken = Named("shaken");
+  turned.turn = 0.5 * std::numbers::pi * Eigen::Vector3d::UnitY();
+  shaken.shake = Protocol::Shake{{0, 0.004, 0}, 5};
+  for (const Protocol& protocol : {turned, shaken}) {
+    const RecordedGrip clamp = Plan(protocol).item.recording.object.grips.at(0);
+    EXPECT_EQ(clamp.placement.shift, 1e-3) << protocol.name;
+    EXPECT_EQ(clamp.placement.turn, 0.02) << protocol.name;
+  }
+}
+
 TEST_F(PlannedRecordingOfABar, ShakesTheClampFromTheReleaseOn) {
   Protocol protocol = Named("shaken");
   protocol.shake = Protocol::Shake{{0, 0.004, 0}, 5};
@@ -102,6 +115,17 @@ TEST_F(PlannedRecordingOfABar, HasFurtherMarkersFarFromTheOthers) {
   }
   protocol.more_markers = 1000;
   EXPECT_THAT(ErrorOf(protocol), HasSubstr("has room for"));
+}
+
+// A recording that was made as a plan says has markers with such names already.
+TEST_F(PlannedRecordingOfABar, GivesFurtherMarkersNamesThatAreNotTaken) {
+  Markers& markers = bar_.study.recordings[0].recording.markers;
+  markers.names.at(0) = "new2";
+  Protocol protocol = Named("markers");
+  protocol.more_markers = 3;
+  const std::vector<std::string> names = Plan(protocol).item.recording.markers.names;
+  EXPECT_THAT(std::vector<std::string>(names.end() - 3, names.end()),
+              ::testing::ElementsAre("new1", "new3", "new4"));
 }
 
 TEST_F(PlannedRecordingOfABar, SaysWhatCannotBeDone) {

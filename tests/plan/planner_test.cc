@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "plan/planned_bar.h"
 #include "report/plan_report.h"
+#include "support/silent_progress.h"
 
 namespace lacuna {
 namespace {
@@ -44,14 +45,30 @@ TEST(RivalsOf, AreTheEffectsAmongTheMostProbableHypotheses) {
   EXPECT_EQ(rivals[2].probability, 0);
 }
 
+// A nuisance beside an effect is not to be decided upon.
+TEST(RivalsOf, AreEffectsWithOrWithoutNuisances) {
+  DiagnosisRecord diagnosis;
+  diagnosis.decision.probabilities = {
+      Probable(Kind::kEffect, {"drag", "clock"}, 0.50), Probable(Kind::kEffect, {"gravity"}, 0.30),
+      Probable(Kind::kEffect, {"drag"}, 0.20), Probable(Kind::kNuisance, {"clock"}, 0)};
+  const std::vector<PlannedRival> rivals = RivalsOf(diagnosis);
+  ASSERT_EQ(rivals.size(), 2u);
+  EXPECT_EQ(rivals[0].effect, "drag");
+  EXPECT_NEAR(rivals[0].probability, 0.70, 1e-12);
+  EXPECT_EQ(rivals[1].effect, "gravity");
+}
+
 TEST(MakePlan, SaysThatNothingIsLeftToBeDecided) {
   const PlannedBar bar;
   FittedRun fitted;
   fitted.study = bar.study;
   fitted.mesh = bar.mesh;
   DiagnosisRecord diagnosis;
-  diagnosis.decision.probabilities = {Probable(Kind::kEffect, {"drag"}, 1)};
-  Progress progress({.style = ProgressStyle::kSilent});
+  // With or without an error of the clock, drag is missing.
+  diagnosis.decision.probabilities = {Probable(Kind::kEffect, {"drag", "clock"}, 0.6),
+                                      Probable(Kind::kEffect, {"drag"}, 0.4),
+                                      Probable(Kind::kNuisance, {"clock"}, 0)};
+  SilentProgress progress;
   try {
     MakePlan({fitted, diagnosis, {}}, {}, &progress);
     ADD_FAILURE() << "a plan without rivals";
