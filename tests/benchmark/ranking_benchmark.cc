@@ -19,6 +19,7 @@
 #include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
+#include "support/silent_progress.h"
 
 namespace lacuna {
 namespace {
@@ -49,7 +50,7 @@ int Run(const std::string& file, int repeats) {
   const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
   const ReferenceBody reference = MakeReferenceBody(study);
   const CalibrationProblem problem(study, reference.mesh);
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const Eigen::VectorXd values = FitFromStart(problem, &progress).parameters;
   const std::vector<MisfitDirection> directions = DirectionsOfEffects(problem);
   std::vector<double> forward, tangents, pilots, nuisances, ranking;

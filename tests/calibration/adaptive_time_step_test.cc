@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -16,7 +17,7 @@ class AdaptiveTimeStepOfABar : public testing::Test {
   AdaptiveTimeStepOfABar() { WriteBarRecording(folder_.Path(), FilmHeldBar(truth_)); }
 
   AdaptedFit Fit(PredictionStudy* study) const {
-    Progress progress({.style = ProgressStyle::kSilent});
+    SilentProgress progress;
     return FitWithAdaptiveTimeStep(BarMesh({8, 2, 2}, 2), study, &progress);
   }
 

@@ -17,6 +17,7 @@
 #include "effects/catalogue.h"
 #include "prediction/recording_noise.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -26,7 +27,7 @@ namespace {
 TetMesh StudyMesh() { return BarMesh({7, 2, 2}, 2); }
 
 Calibration FitOf(const CalibrationProblem& problem) {
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   return FitFromStart(problem, &progress);
 }
 

@@ -7,6 +7,7 @@
 #include "calibration/calibration_run.h"
 #include "core/error.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -26,7 +27,7 @@ void ExpectRefusedAfterAChange(PredictionStudy study, const TemporaryFolder& fol
                                const std::string& name) {
   study.output = folder / "run";
   std::ofstream(folder / name, std::ios::app) << "\n";
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   EXPECT_THAT([&] { RunCalibration(study, &progress); },
               testing::ThrowsMessage<InputError>(
                   testing::AllOf(testing::HasSubstr(name), testing::HasSubstr("has changed"))));

@@ -13,6 +13,7 @@
 #include "prediction/prediction_study_reader.h"
 #include "scan/scan_writer.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -88,7 +89,7 @@ recordings:
 }
 
 Calibration FitOf(const CalibrationProblem& problem) {
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   return FitFromStart(problem, &progress);
 }
 

@@ -17,6 +17,7 @@
 #include "geometry/embedding.h"
 #include "prediction/prediction_study_reader.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -87,7 +88,7 @@ std::vector<std::string> NamesOf(const CalibrationProblem& problem) {
 }
 
 Calibration FitOf(const CalibrationProblem& problem) {
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   return FitFromStart(problem, &progress);
 }
 
@@ -133,7 +134,7 @@ TEST(HangingBar, IsReadBackWithTheDensityThatWasFitted) {
   WriteBarRecording(folder.Path(), FilmHangingBar());
   const auto run = [&](const std::string& text) {
     std::ofstream(folder / "study.yaml") << text;
-    Progress progress({.style = ProgressStyle::kSilent});
+    SilentProgress progress;
     return RunCalibration(ReadPredictionStudy(Config::Load(folder / "study.yaml")), &progress);
   };
   const CalibrationRecord exact = run(HangingExperiment(folder.Path(), ""));
@@ -171,7 +172,7 @@ TEST(HangingBar, MovesAsItWasFittedWhenItIsReadBack) {
                       {"{name: young_modulus}, {name: mass_damping.alpha}",
                        "{name: young_modulus, mean: 110 kPa, deviation: 1 kPa}"}});
   const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "study.yaml"));
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const CalibrationRecord record = RunCalibration(study, &progress);
   ASSERT_TRUE(record.usable) << record.message;
   ASSERT_EQ(record.parameters.at(1).name, "density");

@@ -11,16 +11,11 @@
 #include "record/motion_record.h"
 #include "record/packed_array.h"
 #include "support/scanned_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
-
-ProgressOptions Silent() {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  return silent;
-}
 
 // A fit of nothing but nuisance parameters, in <folder>/run.
 std::filesystem::path FitBar(const TemporaryFolder& folder) {
@@ -29,7 +24,7 @@ std::filesystem::path FitBar(const TemporaryFolder& folder) {
                                        {"{name: young_modulus}, {name: mass_damping.alpha}", ""},
                                        {"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"},
                                        {"alpha: 1 1/s", "alpha: 2 1/s"}});
-  Progress progress(Silent());
+  SilentProgress progress;
   const CalibrationRecord record =
       RunCalibration(ReadPredictionStudy(Config::Load(folder / "study.yaml")), &progress);
   EXPECT_TRUE(record.usable) << record.message;
@@ -41,7 +36,7 @@ TEST(KeptMotion, ShowsTheSurfaceInEveryFrame) {
   const std::vector<Eigen::Matrix3Xd> markers = FilmHeldBar({});
   WriteBarRecording(folder.Path(), markers);
   const std::filesystem::path run = FitBar(folder);
-  Progress progress(Silent());
+  SilentProgress progress;
   KeepMotion(run, &progress);
   const std::string written = FileContent(MotionFile(run, 0));
   const StoredMotion motion = ReadMotionFile(MotionFile(run, 0));
@@ -90,7 +85,7 @@ TEST(KeptMotion, ShowsTheSurfaceOfABarThatWasScanned) {
                 "fixed: [{name: clamp, half_space: {point: [0.002 m, 0 m, 0 m], normal: [-1, 0, "
                 "0]}}]\nreference: {from: mesh, file: box.off}\n");
   const std::filesystem::path run = FitBar(folder);
-  Progress progress(Silent());
+  SilentProgress progress;
   KeepMotion(run, &progress);
   const StoredMotion motion = ReadMotionFile(MotionFile(run, 0));
   EXPECT_EQ(motion.times.size(), static_cast<size_t>(kScans));

@@ -15,16 +15,11 @@
 #include "prediction/prediction_study_reader.h"
 #include "record/csv_table.h"
 #include "support/pulled_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
-
-ProgressOptions Silent() {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  return silent;
-}
 
 using Replacements = std::map<std::string, std::string>;
 
@@ -34,7 +29,7 @@ PredictionStudy StudyOf(const TemporaryFolder& folder, const Replacements& repla
 }
 
 Calibration FitOf(const CalibrationProblem& problem) {
-  Progress progress(Silent());
+  SilentProgress progress;
   return FitFromStart(problem, &progress);
 }
 
@@ -228,7 +223,7 @@ TEST(MeasuredForce, ARunKeepsItsErrorsAndItsCurve) {
   WritePulledBar(folder.Path(), {},
                  "{file: force.csv, time: t, along: [2, 0, 0], value: fx, tare_deviation: 0.3 N}");
   std::ofstream(folder / "study.yaml") << PulledBarExperiment(folder.Path());
-  Progress progress(Silent());
+  SilentProgress progress;
   const CalibrationRecord record =
       RunCalibration(ReadPredictionStudy(Config::Load(folder / "study.yaml")), &progress);
   ASSERT_TRUE(record.usable) << record.message;

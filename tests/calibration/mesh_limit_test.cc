@@ -14,6 +14,7 @@
 #include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -28,7 +29,7 @@ struct BarFit {
       : study(ReadBarStudy(folder, {{"max_volume: 1000 mm^3",
                                      "max_volume: " + volume + ", preserve_surface: false"}})),
         problem(study, MakeReferenceBody(study).mesh) {
-    Progress progress({.style = ProgressStyle::kSilent});
+    SilentProgress progress;
     calibration = FitFromStart(problem, &progress);
   }
 };

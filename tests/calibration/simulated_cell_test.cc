@@ -13,6 +13,7 @@
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
 #include "support/pulled_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -65,7 +66,7 @@ TEST(SimulatedCell, ItsTareAndDelayAreRecoveredByAFit) {
   const PredictionStudy study = StudyOf(folder / "played", {});
   EXPECT_TRUE(study.recordings.front().simulated_cells.empty());
   const CalibrationProblem problem(study, mesh);
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const Calibration fit = FitFromStart(problem, &progress);
   ASSERT_TRUE(fit.usable) << fit.message;
   ASSERT_EQ(fit.estimates.size(), 2u);

@@ -14,6 +14,7 @@
 #include "record/motion_record.h"
 #include "report/comparison_report.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -21,12 +22,6 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
-
-ProgressOptions Silent() {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  return silent;
-}
 
 TEST(ComparedMotion, AddsStrainAndHeightAndWritesFieldsAndTheForce) {
   const TemporaryFolder folder;
@@ -39,7 +34,7 @@ TEST(ComparedMotion, AddsStrainAndHeightAndWritesFieldsAndTheForce) {
                                     {"{name: young_modulus}, {name: mass_damping.alpha}", ""},
                                     {"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"}});
   std::ofstream(experiment) << text;
-  Progress progress(Silent());
+  SilentProgress progress;
   ASSERT_TRUE(RunCalibration(ReadPredictionStudy(Config::Load(experiment)), &progress).usable);
 
   const std::filesystem::path run = folder / "run";

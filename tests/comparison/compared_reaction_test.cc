@@ -10,6 +10,7 @@
 #include "report/calibration_report.h"
 #include "report/comparison_report.h"
 #include "support/pulled_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -23,7 +24,7 @@ TEST(ComparedReaction, IsListedInNewtonsAndInItsNoise) {
   const TemporaryFolder folder;
   WritePulledBar(folder.Path(), {});
   std::ofstream(folder / "study.yaml") << PulledBarExperiment(folder.Path());
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const CalibrationRecord fit =
       RunCalibration(ReadPredictionStudy(Config::Load(folder / "study.yaml")), &progress);
   ASSERT_TRUE(fit.usable) << fit.message;

@@ -7,6 +7,7 @@
 #include "calibration/calibration_fits.h"
 #include "calibration/calibration_problem.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -25,7 +26,7 @@ UnexplainedForce ForceOn(const HeldBarTruth& truth) {
                       {"alpha: 1 1/s", "alpha: 2 1/s"},
                       {"motion: {time_step: 1.5 ms}", "motion: {time_step: 2 ms}"}});
   const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 2));
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const Calibration calibration = FitFromStart(problem, &progress);
   EXPECT_TRUE(calibration.usable) << calibration.message;
   const RecordingModel model = problem.ModelAt(0, calibration.parameters);

@@ -6,13 +6,13 @@
 
 #include <cctype>
 #include <cstdint>
-#include <cstdlib>
 #include <fstream>
 
 #include "core/error.h"
 #include "geometry/surface_check.h"
 #include "support/box_mesh.h"
 #include "support/shapes.h"
+#include "support/shared_data.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -319,12 +319,9 @@ INSTANTIATE_TEST_SUITE_P(All, PublishedMesh,
                                            "silicone_lidar/cad/cantilever_f1494_v749.tet"));
 
 TEST_P(PublishedMesh, IsReadAndHasAClosedBoundary) {
-  const char* data = std::getenv("LACUNA_DATA");
-  const std::filesystem::path folder =
-      data ? std::filesystem::path(data)
-           : std::filesystem::path(LACUNA_SOURCE_DIR) / "../shared/data";
-  if (!std::filesystem::exists(folder / GetParam())) GTEST_SKIP() << "skipped, data absent";
-  const TetMeshFile read = ReadTetMesh(folder / GetParam());
+  const std::filesystem::path file = SharedData() / GetParam();
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "skipped, data absent";
+  const TetMeshFile read = ReadTetMesh(file);
   const SurfaceReport report = CheckSurface(ExtractBoundary(read.mesh).surface);
   EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
   EXPECT_NEAR(report.volume, TetVolumes(read.mesh).sum(), 1e-12 * report.volume);

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "paper/drop_figure.h"
 #include "support/box_mesh.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -91,7 +92,7 @@ TEST(DropStudyTest, MeshesComeCloseToThoseOfThePaper) {
   for (const DropMesh& mesh : study.meshes) {
     Scene scene = SceneOf(study, mesh, 1);
     scene.frames = 1;
-    Progress progress({.style = ProgressStyle::kSilent});
+    SilentProgress progress;
     const SceneMotion motion = SimulateScene(scene, &progress);
     ASSERT_TRUE(motion.IsUsable()) << motion.message;
     // Sizes are what can be chosen; counts come in jumps.
@@ -108,7 +109,7 @@ TEST(DropStudyTest, ACoarseBodyBouncesAndItsEnergyDoesNotGrow) {
   study.meshes = {coarse};
   study.scene.frame_rate /= 2;  // coarser in time, too
   study.scene.frames /= 2;
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const std::vector<DropRun> runs = RunDrop(study, &progress);
   ASSERT_EQ(runs.size(), 1u);
   const DropNumbers& numbers = runs[0].numbers;

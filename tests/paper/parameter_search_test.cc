@@ -10,6 +10,7 @@
 
 #include "paper/reduced_bend.h"
 #include "reconstruction/reconstruction_study.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -39,7 +40,7 @@ class ParameterSearchTest : public testing::Test {
   }
   static ParameterSearchResult Search(const ParameterSearchSettings& settings,
                                       const fs::path& folder) {
-    Progress progress({.style = ProgressStyle::kSilent});
+    SilentProgress progress;
     return RunParameterSearch(Problem(), settings, folder, "reduced", &progress);
   }
 

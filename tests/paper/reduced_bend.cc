@@ -4,11 +4,12 @@
 
 #include "reconstruction/reconstruction_study.h"
 #include "reconstruction/recorded_states.h"
+#include "support/silent_progress.h"
 
 namespace lacuna {
 
 Table1Scans LoadReducedBend() {
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const std::filesystem::path bend =
       std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend";
   Table1Scans scans{

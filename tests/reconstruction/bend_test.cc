@@ -4,9 +4,9 @@
 #include <fstream>
 #include <string>
 
-#include "core/progress.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_study.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -32,7 +32,7 @@ std::filesystem::path WriteReducedBend(const TemporaryFolder& folder) {
 }
 
 RunRecord RunExperiment(const std::filesystem::path& experiment) {
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   return RunReconstruction(ReadReconstruction(Config::Load(experiment)), &progress);
 }
 

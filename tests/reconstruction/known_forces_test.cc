@@ -5,10 +5,10 @@
 #include <fstream>
 #include <string>
 
-#include "core/progress.h"
 #include "experiment/scene.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_study.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -56,7 +56,7 @@ forces: )" +
 
 TEST(KnownForces, PredictTheMotionThatTheyCaused) {
   const TemporaryFolder folder;
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   WriteLoadedBar(folder / "scan", &progress);
   const ReconstructionStudy study =
       ReadReconstruction(Config::Parse(Experiment(folder, "{model: known}"), "known.yaml"));

@@ -5,10 +5,10 @@
 #include <fstream>
 #include <string>
 
-#include "core/progress.h"
 #include "experiment/scene.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_study.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -88,7 +88,7 @@ TEST(StudyErrors, TheNodesWhereForcesActAreAnInputOfTheRun) {
       << "\nforces: {region: {nodes_file: " << (folder / "pushed_nodes.txt").string() << "}}\n";
   const ReconstructionStudy study = ReadReconstruction(Config::Load(folder / "e.yaml"));
   std::ofstream(folder / "pushed_nodes.txt", std::ios::app) << "\n";
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   EXPECT_THAT([&] { RunReconstruction(study, &progress); },
               testing::ThrowsMessage<InputError>(
                   testing::AllOf(HasSubstr("pushed_nodes.txt"), HasSubstr("has changed"))));

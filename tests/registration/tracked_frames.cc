@@ -7,17 +7,13 @@
 #include <string>
 
 #include "core/error.h"
+#include "support/shared_data.h"
 
 namespace lacuna {
 
 namespace fs = std::filesystem;
 
-fs::path RubberStripFrames() {
-  const char* named = std::getenv("LACUNA_DATA");
-  const fs::path data =
-      named != nullptr ? fs::path(named) : fs::path(LACUNA_SOURCE_DIR) / "../shared/data";
-  return data / "rubber_strip" / "frames";
-}
+fs::path RubberStripFrames() { return SharedData() / "rubber_strip" / "frames"; }
 
 Eigen::Matrix3Xd ReadTrackedFrame(const fs::path& file) {
   std::ifstream stream(file);

@@ -10,8 +10,7 @@
 
 namespace lacuna {
 
-// The folder of rubber_strip's frames, points_00.csv …, which need not be there: in the data
-// folder that the environment variable LACUNA_DATA names, or beside the source.
+// The folder of rubber_strip's frames, points_00.csv …, among the published data; it may not exist.
 std::filesystem::path RubberStripFrames();
 
 // The points (3 × rows, m) of a file with a heading and lines that begin with x, y, z in mm; NaN
