@@ -28,7 +28,9 @@ struct RecordingScatter {
   double outlier_share = 0;  // of all points in all frames; NaN where none could be judged
   int worst_frame = -1;      // the frame with the largest share of outliers; −1 without any
   double worst_share = 0;    // that share
-  double farthest = 0;       // m, the farthest outlier from where it is expected
+  // m: of scans the largest distance of an outlier from the surface, of tracks the largest
+  // deviation of a coordinate of an outlier; 0 without any.
+  double farthest = 0;
 };
 
 // Measures the frames of a recording one after the other, as they are read. Deterministic.

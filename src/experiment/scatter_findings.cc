@@ -129,9 +129,13 @@ std::string DescribeScatter(const RecordingScatter& scatter, const StatedNoise& 
   if (!std::isnan(scatter.outlier_share))
     text += fmt::format("; {} {}", InPercent(scatter.outlier_share),
                         scatter.is_of_surface ? "are outliers" : "leave their track for a frame");
-  if (scatter.worst_frame >= 0)
-    text +=
-        fmt::format(", most in frame {}, {}", scatter.worst_frame, InPercent(scatter.worst_share));
+  if (scatter.worst_frame >= 0) {
+    const std::string farthest = "up to " + InMillimetres(scatter.farthest);
+    text += fmt::format(", {}, most in frame {}, {}",
+                        scatter.is_of_surface ? farthest + " off the surface"
+                                              : "by " + farthest + " in a coordinate",
+                        scatter.worst_frame, InPercent(scatter.worst_share));
+  }
   return text + NoteOfStated(scatter, noise);
 }
 

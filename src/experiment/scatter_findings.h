@@ -19,9 +19,9 @@ struct StatedNoise {
 };
 
 // One line: the typical and the largest scatter, the spacing of the points, the share of outliers
-// where points could be judged, and a stated noise that is more than three times the scatter. Such
-// a value is no mistake where it stands for errors of the model or the registration. Empty where
-// nothing can be said.
+// where points could be judged and how far off these are, and a stated noise that is more than
+// three times the scatter. Such a value is no mistake where it stands for errors of the model or
+// the registration. Empty where nothing can be said.
 std::string DescribeScatter(const RecordingScatter& scatter, const StatedNoise& noise = {});
 
 // Sentences about scatter that is more than three times the stated noise, that exceeds half of the
