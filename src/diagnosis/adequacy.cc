@@ -1,5 +1,7 @@
 #include "diagnosis/adequacy.h"
 
+#include <glog/logging.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -16,10 +18,10 @@ constexpr int kDraws = 400;
 // Eigenvalues of AᵀA, scaled to a unit diagonal, below this share are rounding.
 constexpr double kRounding = 1e-12;
 
-// The share of draws with at least this value, the value itself counted as one more draw.
+// The share of the values, of which `value` is one, that are not smaller.
 double TailProbability(const std::vector<double>& sorted, double value) {
   const auto first = std::lower_bound(sorted.begin(), sorted.end(), value);
-  return static_cast<double>(sorted.end() - first + 1) / static_cast<double>(sorted.size() + 1);
+  return static_cast<double>(sorted.end() - first) / static_cast<double>(sorted.size());
 }
 
 // Independent standard normal numbers.
@@ -63,51 +65,57 @@ std::vector<NamedEvidence> SumVariants(const HypothesisSpace& space,
   return named;
 }
 
-AdequacyStatistics MeasureAdequacy(const HypothesisSpace& space,
-                                   const ProjectedHypotheses& projected,
-                                   const ResidualProducts& residual) {
+AdequacyStatistics MeasureAdequacy(const ProjectedHypotheses& projected,
+                                   const ResidualProducts& left) {
   AdequacyStatistics statistics;
-  const Eigen::VectorXd toward = projected.Project(residual.toward);
-  const Eigen::VectorXd factors = projected.LogBayesFactors(toward);
+  const HypothesisSpace& space = projected.space();
+  const Eigen::VectorXd factors = projected.LogBayesFactors(left.toward);
   for (size_t h = 0; h < space.hypotheses.size(); ++h)
     if (space.hypotheses[h].kind == HypothesisKind::kUnknownForce)
       statistics.unknown_force = factors[static_cast<Eigen::Index>(h)];
-  statistics.left = projected.ForceMisfit(toward);
   statistics.further = -std::numeric_limits<double>::infinity();
   for (const NamedEvidence& named : SumVariants(space, factors)) {
     if (named.evidence <= statistics.further) continue;
     statistics.further = named.evidence;
     statistics.best_further = named;
   }
-  const double freedom = static_cast<double>(
-      std::max<Eigen::Index>(1, space.rows - static_cast<Eigen::Index>(space.base.size())));
-  statistics.variance = projected.Misfit(residual) / freedom;
-  statistics.left = std::max(statistics.left, 2 * statistics.further);
+  statistics.variance = left.squares / static_cast<double>(projected.Freedom());
   return statistics;
 }
 
 AdequacyTest TestAdequacy(const HypothesisSpace& space, const std::vector<int>& further,
                           bool noise_is_known, uint64_t seed) {
   const ProjectedHypotheses projected(space, further);
+  const HypothesisSpace marginal = projected.Marginal();
+  const double freedom = static_cast<double>(projected.Freedom());
   AdequacyTest test;
   test.model_error = space.model_error;
-  test.found = MeasureAdequacy(space, projected, {space.model.squares(), space.model.toward()});
-  const NoiseDraws noise(space);
-  std::vector<double> drawn[3];
+  test.found = MeasureAdequacy(projected, {marginal.model.squares(), marginal.model.toward()});
+  // The rows are whitened with the given noise, whose variance is then 1.
+  if (noise_is_known)
+    test.found.variance =
+        projected.MisfitOfGivenNoise({space.model.squares(), space.model.toward()}) / freedom;
+  const NoiseDraws noise(marginal);
   std::vector<AdequacyStatistics> draws;
   for (int k = 0; k < kDraws; ++k) {
-    const AdequacyStatistics& draw = draws.emplace_back(
-        MeasureAdequacy(space, projected, noise.Draw(seed, static_cast<uint64_t>(k))));
-    drawn[0].push_back(draw.unknown_force);
-    drawn[1].push_back(draw.further);
-    // The rows are whitened with the given noise, whose variance is then 1.
-    drawn[2].push_back(draw.variance / space.variance);
+    AdequacyStatistics& draw =
+        draws.emplace_back(MeasureAdequacy(projected, noise.Draw(seed, static_cast<uint64_t>(k))));
+    draw.variance /= space.variance;
   }
-  for (std::vector<double>& values : drawn) std::sort(values.begin(), values.end());
-  const auto smallest = [&](const AdequacyStatistics& of, double variance, AdequacyTest* tails) {
-    const double p[] = {TailProbability(drawn[0], of.unknown_force),
-                        TailProbability(drawn[1], of.further),
-                        noise_is_known ? TailProbability(drawn[2], variance) : 1.0};
+  // What was found counts as one more draw: under the hypothesis all of them are alike.
+  std::vector<double> all[3];
+  const auto add = [&](const AdequacyStatistics& one) {
+    all[0].push_back(one.unknown_force);
+    all[1].push_back(one.further);
+    all[2].push_back(one.variance);
+  };
+  add(test.found);
+  for (const AdequacyStatistics& draw : draws) add(draw);
+  for (std::vector<double>& values : all) std::sort(values.begin(), values.end());
+  const auto smallest = [&](const AdequacyStatistics& of, AdequacyTest* tails) {
+    const double p[] = {TailProbability(all[0], of.unknown_force),
+                        TailProbability(all[1], of.further),
+                        noise_is_known ? TailProbability(all[2], of.variance) : 1.0};
     if (tails != nullptr) {
       tails->p_unknown_force = p[0];
       tails->p_further = p[1];
@@ -115,11 +123,13 @@ AdequacyTest TestAdequacy(const HypothesisSpace& space, const std::vector<int>& 
     }
     return *std::min_element(std::begin(p), std::end(p));
   };
-  const double found = smallest(test.found, test.found.variance, &test);
+  const double found = smallest(test.found, &test);
   int as_small = 1;
-  for (const AdequacyStatistics& draw : draws)
-    as_small += smallest(draw, draw.variance / space.variance, nullptr) <= found;
+  for (const AdequacyStatistics& draw : draws) as_small += smallest(draw, nullptr) <= found;
   test.p = static_cast<double>(as_small) / (kDraws + 1);
+  test.left = 2 * std::max(test.found.unknown_force, test.found.further);
+  if (test.IsResidualRarest())
+    test.left = std::max(test.left, (test.found.variance - 1) * freedom / space.variance);
   return test;
 }
 
@@ -136,9 +146,12 @@ NoiseDraws::NoiseDraws(const HypothesisSpace& space)
   root_ = unit.asDiagonal() * eigen.eigenvectors().rightCols(rank) *
           eigen.eigenvalues().tail(rank).cwiseSqrt().asDiagonal();
   if (!(space.model_error > 0)) return;
+  CHECK(space.base.empty());
   error_ = std::sqrt(2 * space.model_error * space.variance);
   products_ = products;
+  const Eigen::VectorXd visible = products.diagonal();
   for (const WeighedHypothesis& hypothesis : space.hypotheses) {
+    if ((visible(hypothesis.columns).array() <= 0).all()) continue;
     if (hypothesis.kind == HypothesisKind::kUnknownForce) forces_.push_back(hypothesis.columns);
     if (hypothesis.kind == HypothesisKind::kEffect) effects_.push_back(hypothesis.columns);
   }
@@ -156,8 +169,7 @@ ResidualProducts NoiseDraws::Draw(uint64_t seed, uint64_t number) const {
     rest = unseen * std::pow(1 - spread + deviation, 3);
   }
   ResidualProducts products;
-  // The product of noise and model error is neglected: its mean is 0.
-  products.squares = variance_ * (normal.squaredNorm() + std::max(0.0, rest)) + error_ * error_;
+  products.squares = variance_ * (normal.squaredNorm() + std::max(0.0, rest));
   products.toward = std::sqrt(variance_) * (root_ * normal);
   const bool along_force = effects_.empty() || (number % 2 == 0 && !forces_.empty());
   const auto& along = along_force ? forces_ : effects_;
@@ -166,7 +178,11 @@ ResidualProducts NoiseDraws::Draw(uint64_t seed, uint64_t number) const {
     const Eigen::VectorXd amounts =
         NormalVector(static_cast<Eigen::Index>(own.size()), seed, number, 2);
     const double length = std::sqrt(amounts.dot(products_(own, own) * amounts));
-    if (length > 0) products.toward += error_ / length * (products_(Eigen::all, own) * amounts);
+    if (length > 0) {
+      const Eigen::VectorXd error = error_ / length * amounts;
+      products.squares += error_ * error_ + 2 * error.dot(products.toward(own));
+      products.toward += products_(Eigen::all, own) * error;
+    }
   }
   return products;
 }

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "diagnosis/adequacy.h"
+#include "diagnosis/combinations.h"
 #include "diagnosis/decision_rules.h"
 #include "diagnosis/thresholds.h"
 
@@ -18,10 +21,10 @@ size_t CountOf(const std::vector<HypothesisProbability>& hypotheses, Kind kind) 
                                            [&](const auto& one) { return one.kind == kind; }));
 }
 
-const WeighedRefit* FindRefit(const DecisionInput& input, const std::string& effect) {
-  for (const WeighedRefit& refit : input.refits)
-    if (refit.effect == effect) return &refit;
-  return nullptr;
+// What a natural value adds to the evidence of an effect.
+double NaturalValueOf(const DecisionInput& input, const std::string& effect) {
+  const auto natural = input.natural_value.find(effect);
+  return natural != input.natural_value.end() ? natural->second : 0;
 }
 
 // Adopted nuisances are in the base, so that every hypothesis contains them. Hypotheses without
@@ -29,14 +32,14 @@ const WeighedRefit* FindRefit(const DecisionInput& input, const std::string& eff
 void CompareWithAdopted(const DecisionInput& input, double effects,
                         std::vector<HypothesisProbability>* hypotheses) {
   if (input.adopted.empty()) return;
-  // The prior probability that there is such a nuisance, and that nothing else is missing.
-  const double adopted = input.adopted_evidence + std::log(kPriorNuisances);
+  const double adopted = EvidenceOfAdopted(input);
   std::vector<HypothesisProbability> in_place;
   for (HypothesisProbability& one : *hypotheses) {
     for (const WeighedRefit& refit : input.in_place_of_adopted) {
       if (one.kind != Kind::kEffect || refit.effect != one.names.front()) continue;
       HypothesisProbability& alone = in_place.emplace_back(one);
-      alone.evidence = refit.evidence - effects - input.baseline.model_error;
+      alone.evidence = refit.evidence - effects - input.baseline.model_error +
+                       NaturalValueOf(input, refit.effect);
       alone.is_refuted = !refit.predicts;
     }
     one.evidence += adopted;
@@ -63,6 +66,23 @@ double KeptShare(const DecisionInput& input, const std::vector<NamedEvidence>& f
   return 1;
 }
 
+// The log Bayes factor of a nuisance of which there may be several of one name, one for each
+// recording or grip: the mean of their Bayes factors, because each is as probable as the others. Of
+// those the best were refitted; the others count for nothing. Empty: none was refitted.
+std::optional<double> RefittedEvidence(const DecisionInput& input, const std::string& nuisance) {
+  std::vector<double> refitted;
+  for (const WeighedNuisance& refit : input.nuisances)
+    if (refit.name == nuisance && std::isfinite(refit.evidence)) refitted.push_back(refit.evidence);
+  if (refitted.empty()) return std::nullopt;
+  size_t tried = 0;
+  for (const WeighedHypothesis& one : input.baseline.hypotheses)
+    tried += one.kind == HypothesisKind::kNuisance && one.name == nuisance;
+  const double largest = *std::max_element(refitted.begin(), refitted.end());
+  double sum = 0;
+  for (const double evidence : refitted) sum += std::exp(evidence - largest);
+  return largest + std::log(sum / static_cast<double>(std::max(tried, refitted.size())));
+}
+
 // The posterior over single hypotheses.
 std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
                                                const std::vector<NamedEvidence>& first_order) {
@@ -75,44 +95,21 @@ std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
     if (one.kind == Kind::kEffect) {
       const WeighedRefit* refit = FindRefit(input, one.names.front());
       one.is_refuted = refit != nullptr && !refit->predicts;
+      // An effect is compared with the model without it, whose error along its own motion, that of
+      // the baseline, may imitate the effect, whatever columns stand beside the refit.
       if (refit != nullptr)
         one.evidence = refit->evidence - effects - input.baseline.model_error;
       else if (one.evidence > 0)
         one.evidence *= share;
-      if (const auto natural = input.natural_value.find(one.names.front());
-          natural != input.natural_value.end())
-        one.evidence += natural->second;
+      one.evidence += NaturalValueOf(input, one.names.front());
     } else if (one.kind == Kind::kNuisance) {
-      // Of those of one name, one for each recording or grip, the best.
-      double refitted = -std::numeric_limits<double>::infinity();
-      for (const WeighedNuisance& refit : input.nuisances)
-        if (refit.name == one.names.front()) refitted = std::max(refitted, refit.evidence);
-      if (std::isfinite(refitted)) one.evidence = refitted - nuisances;
+      if (const std::optional<double> refitted = RefittedEvidence(input, one.names.front()))
+        one.evidence = *refitted - nuisances;
     }
   }
   CompareWithAdopted(input, effects, &hypotheses);
   SetPosterior(&hypotheses);
   return hypotheses;
-}
-
-// The space in which a hypothesis is tested, and its columns there beside the base.
-struct TestedSpace {
-  const HypothesisSpace* space;
-  std::vector<int> columns;
-};
-
-TestedSpace SpaceOf(const DecisionInput& input, const std::vector<NamedEvidence>& first_order,
-                    const HypothesisProbability& hypothesis) {
-  if (hypothesis.names.empty() || hypothesis.names == input.adopted) return {&input.baseline, {}};
-  const std::string& name = hypothesis.names.front();
-  if (hypothesis.kind == Kind::kEffect && hypothesis.names.size() == 1 && !input.adopted.empty())
-    for (const WeighedRefit& refit : input.in_place_of_adopted)
-      if (refit.effect == name) return {&refit.space, {}};
-  if (hypothesis.kind == Kind::kEffect)
-    if (const WeighedRefit* refit = FindRefit(input, name)) return {&refit->space, {}};
-  for (const NamedEvidence& named : first_order)
-    if (named.name == name) return {&input.baseline, input.baseline.hypotheses[named.best].columns};
-  return {&input.baseline, {}};
 }
 
 // Adds to the columns of a hypothesis with an effect those of the nuisances that explain the
@@ -144,17 +141,17 @@ std::vector<std::string> TakeNuisancesBeside(TestedSpace* tested) {
   return taken;
 }
 
-// The log Bayes factor that the best effect exceeds in one of twenty recordings in which nothing is
+// The evidence that the best effect exceeds in one of twenty recordings in which nothing is
 // missing. NaN where there is no effect.
 double ChanceOf(const DecisionInput& input, const ProjectedHypotheses& beside_nothing) {
   constexpr int kDraws = 400;
-  const NoiseDraws noise(input.baseline);
+  const NoiseDraws noise(beside_nothing.Marginal());
   std::vector<double> best;
   for (int k = 0; k < kDraws; ++k) {
     const ResidualProducts draw = noise.Draw(input.seed + 1, static_cast<uint64_t>(k));
     double largest = -std::numeric_limits<double>::infinity();
-    for (const NamedEvidence& named : SumVariants(
-             input.baseline, beside_nothing.LogBayesFactors(beside_nothing.Project(draw.toward))))
+    for (const NamedEvidence& named :
+         SumVariants(input.baseline, beside_nothing.LogBayesFactors(draw.toward)))
       if (named.kind == HypothesisKind::kEffect) largest = std::max(largest, named.evidence);
     best.push_back(largest);
   }
@@ -163,7 +160,8 @@ double ChanceOf(const DecisionInput& input, const ProjectedHypotheses& beside_no
   return std::isfinite(chance) ? chance : std::numeric_limits<double>::quiet_NaN();
 }
 
-// `removed`: the misfit, σ², that the hypothesis and the effects added before have removed.
+// `removed`: twice the evidence of the hypothesis and of the effects added before, i.e. the misfit
+// that they have removed, as AdequacyTest::left counts what is left.
 RecordedAdequacy RecordOf(const AdequacyTest& test, double removed,
                           std::vector<std::string> beside) {
   RecordedAdequacy adequacy;
@@ -176,109 +174,10 @@ RecordedAdequacy RecordOf(const AdequacyTest& test, double removed,
   adequacy.further = test.found.best_further.name;
   adequacy.further_evidence = test.found.further;
   adequacy.rms_over_sigma = std::sqrt(std::max(0.0, test.found.variance));
-  adequacy.left_share = removed > 0 ? std::max(0.0, test.found.left) / removed
-                                    : std::numeric_limits<double>::infinity();
+  adequacy.left_share =
+      removed > 0 ? std::max(0.0, test.left) / removed : std::numeric_limits<double>::infinity();
   adequacy.is_tolerated = adequacy.left_share < kToleratedModelError;
   return adequacy;
-}
-
-// An effect with the evidence of everything else beside it.
-struct EffectWithFurther {
-  std::string effect;
-  double evidence = 0;  // of the effect against the model as it is
-  TestedSpace tested;
-  std::vector<NamedEvidence> further;
-
-  // The evidence of this effect together with a further one that has this evidence beside it.
-  // Either of the two may be found first.
-  double With(double second) const {
-    return evidence + second - tested.space->model_error + std::log(2.0);
-  }
-};
-
-// Two effects that may be missing together, with the space in which both are tested.
-struct Pair {
-  HypothesisProbability hypothesis;
-  TestedSpace tested;
-};
-
-// The effects of the posterior that may be the first of a pair: those that were refitted, and the
-// most probable one.
-std::vector<EffectWithFurther> FirstEffects(const DecisionInput& input,
-                                            const std::vector<NamedEvidence>& first_order,
-                                            const std::vector<HypothesisProbability>& posterior) {
-  std::vector<EffectWithFurther> effects;
-  for (const HypothesisProbability& first : posterior) {
-    if (first.kind != Kind::kEffect || first.is_refuted) continue;
-    if (first.names.size() != 1 + input.adopted.size()) continue;  // in place of adopted nuisances
-    if (FindRefit(input, first.names.front()) == nullptr && &first != &posterior.front()) continue;
-    const TestedSpace tested = SpaceOf(input, first_order, first);
-    const ProjectedHypotheses beside(*tested.space, tested.columns);
-    const Eigen::VectorXd factors =
-        beside.LogBayesFactors(beside.Project(tested.space->model.toward()));
-    effects.push_back(
-        {first.names.front(), first.evidence, tested, SumVariants(*tested.space, factors)});
-  }
-  return effects;
-}
-
-Pair MakePair(const DecisionInput& input, const std::string& first, const std::string& second,
-              double evidence, TestedSpace tested) {
-  Pair pair;
-  pair.hypothesis.kind = Kind::kPair;
-  pair.hypothesis.names = {first, second};
-  pair.hypothesis.names.insert(pair.hypothesis.names.end(), input.adopted.begin(),
-                               input.adopted.end());
-  pair.hypothesis.evidence = evidence;
-  pair.tested = std::move(tested);
-  return pair;
-}
-
-// The pairs that the decision weighs: those that were fitted and whose first effect is not refuted,
-// and each first effect with the best further effect beside it. The further effect is weighed to
-// first order, so that it may replace a part of the first one although only one of them is missing.
-// Where both were refitted, the smaller of the two estimates therefore counts.
-std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvidence>& first_order,
-                          const std::vector<HypothesisProbability>& posterior) {
-  const std::vector<EffectWithFurther> effects = FirstEffects(input, first_order, posterior);
-  const auto is_refuted = [&](const std::string& effect) {
-    const WeighedRefit* refit = FindRefit(input, effect);
-    return refit != nullptr && !refit->predicts;
-  };
-  std::vector<Pair> pairs;
-  for (const WeighedPair& refit : input.pairs)
-    for (const EffectWithFurther& first : effects) {
-      if (first.effect != refit.first) continue;
-      const double second = refit.gain - std::log(static_cast<double>(input.families.size()));
-      pairs.push_back(
-          MakePair(input, refit.first, refit.second, first.With(second), {&refit.space, {}}));
-      pairs.back().hypothesis.is_refuted = !refit.predicts || is_refuted(refit.second);
-    }
-  for (const EffectWithFurther& first : effects) {
-    const std::string& name = first.effect;
-    const NamedEvidence* second = nullptr;
-    for (const NamedEvidence& named : first.further)
-      if (named.kind == HypothesisKind::kEffect && named.name != name && !is_refuted(named.name) &&
-          (second == nullptr || named.evidence > second->evidence))
-        second = &named;
-    // The error of the first effect's model may give so much evidence to any other effect.
-    if (second == nullptr || second->evidence < kToleratedModelError * first.evidence) continue;
-    if (std::any_of(pairs.begin(), pairs.end(), [&](const Pair& other) {
-          return other.hypothesis.Contains(name) && other.hypothesis.Contains(second->name);
-        }))
-      continue;
-    double evidence = first.With(second->evidence);
-    for (const EffectWithFurther& other : effects) {
-      if (other.effect != second->name) continue;
-      for (const NamedEvidence& named : other.further)
-        if (named.name == name) evidence = std::min(evidence, other.With(named.evidence));
-    }
-    TestedSpace tested = first.tested;
-    const std::vector<int>& columns = first.tested.space->hypotheses[second->best].columns;
-    tested.columns.insert(tested.columns.end(), columns.begin(), columns.end());
-    pairs.push_back(MakePair(input, name, second->name, evidence, std::move(tested)));
-  }
-  return pairs;
 }
 
 }  // namespace
@@ -313,13 +212,15 @@ Decision Decide(const DecisionInput& input) {
   Decision decision;
   DecisionRecord& record = decision.record;
   record.probabilities = PosteriorOf(input, first_order);
-  const std::vector<Pair> pairs = PairsOf(input, first_order, record.probabilities);
-  for (const Pair& pair : pairs) record.probabilities.push_back(pair.hypothesis);
+  const std::vector<Combination> combinations =
+      CombinationsOf(input, first_order, record.probabilities);
+  for (const Combination& both : combinations) record.probabilities.push_back(both.hypothesis);
   SetPosterior(&record.probabilities);
   const HypothesisProbability& best = record.probabilities.front();
-  TestedSpace tested = SpaceOf(input, first_order, best);
-  for (const Pair& pair : pairs)
-    if (pair.hypothesis.names == best.names) tested = pair.tested;
+  TestedSpace tested = TestedSpaceOf(input, first_order, best);
+  for (const Combination& both : combinations)
+    if (both.hypothesis.names == best.names && both.hypothesis.evidence == best.evidence)
+      tested = both.tested;
   std::vector<std::string> beside = best.names.empty() ? input.adopted : best.names;
   if (best.kind == Kind::kEffect || best.kind == Kind::kPair)
     for (const std::string& nuisance : TakeNuisancesBeside(&tested))
@@ -334,15 +235,18 @@ Decision Decide(const DecisionInput& input) {
   const auto is_nuisance = [&](const std::string& name) {
     return IsNuisance(record.probabilities, name);
   };
+  const bool is_measurement = std::all_of(naming.names.begin(), naming.names.end(), is_nuisance);
+  // Nuisances beside an effect are mentioned by the test of adequacy.
+  if (naming.level == Naming::Level::kCommon && !is_measurement)
+    std::erase_if(decision.names, is_nuisance);
   if (!record.adequacy.is_adequate && !record.adequacy.is_tolerated) {
     decision.verdict = Verdict::kNotInLibrary;
   } else if (naming.level == Naming::Level::kNothing) {
     decision.verdict = input.is_anything_detectable ? Verdict::kAdequate : Verdict::kNoPower;
-  } else if (std::all_of(naming.names.begin(), naming.names.end(), is_nuisance)) {
+  } else if (is_measurement) {
     decision.verdict = Verdict::kNuisance;
   } else if (naming.level == Naming::Level::kCommon) {
     decision.verdict = Verdict::kMissing;
-    std::erase_if(decision.names, is_nuisance);
   } else {
     decision.verdict = Verdict::kAmbiguous;
   }

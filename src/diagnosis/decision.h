@@ -2,8 +2,8 @@
 //
 // 1. The posterior over {nothing, each effect, each nuisance} follows from the Bayes factors
 //    (decision_rules.h): of a refit where there is one, else to first order.
-// 2. Pairs are added: those that were fitted, and each refitted effect, or the most probable one,
-//    with the best further effect beside it.
+// 2. Combinations are added (combinations.h): pairs of effects, and effects with a nuisance beside
+//    them, fitted or to first order.
 // 3. The most probable hypothesis is tested against its own residual (adequacy.h). If it leaves
 //    more than noise, something unknown is left.
 // 4. What the hypotheses that reach kStatedProbability have in common is stated, else their set.
@@ -33,7 +33,7 @@ Decision Decide(const DecisionInput& input);
 EffectFamily FamilyOf(const std::map<std::string, EffectFamily>& families,
                       const std::string& effect);
 
-// The hypotheses of a space with their log Bayes factors, and "nothing", without probabilities.
+// The hypotheses of a space with their evidence, and "nothing", without probabilities.
 std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>& evidence,
                                                 const std::map<std::string, EffectFamily>& families,
                                                 double model_error);

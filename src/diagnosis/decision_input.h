@@ -2,6 +2,7 @@
 #ifndef LACUNA_DIAGNOSIS_DECISION_INPUT_H_
 #define LACUNA_DIAGNOSIS_DECISION_INPUT_H_
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -25,11 +26,12 @@ struct WeighedRefit {
 struct WeighedPair {
   std::string first, second;
   // Log evidence minus that of the refit with the first effect alone (WeighedRefit), beside the
-  // same nuisances. Contains the evidence for the natural values of both effects, as this fit
+  // same nuisances, and minus the selection penalty of the second effect's variant
+  // (scored_effect.h). Contains the evidence for the natural values of both effects, as this fit
   // estimates them, less that of the first one alone.
   double gain = 0;
   HypothesisSpace space;  // along the refit; the parameters of both are in its base
-  bool predicts = true;   // beyond the first alone
+  bool predicts = true;   // beyond the model without an effect, and beyond either of the two alone
 };
 
 // The model fitted again with one nuisance beside those of the baseline.
@@ -42,6 +44,7 @@ struct DecisionInput {
   HypothesisSpace baseline;  // along the motion of the fitted model
   std::vector<WeighedRefit> refits;
   std::vector<WeighedPair> pairs;
+  std::vector<std::array<std::string, 2>> failed_pairs;  // could not be fitted
   std::vector<WeighedNuisance> nuisances;
   // Nuisances that the ranking has taken into the base because they are so certain, with their log
   // Bayes factor against the model without them, and effects refitted in their place, with theirs.

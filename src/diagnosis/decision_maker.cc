@@ -59,16 +59,21 @@ std::optional<WeighedPair> Weigh(const FittedPair& pair, const RefittedRanking& 
   const std::optional<size_t> first = ranked.FindUsable(pair.first);
   if (!first) return std::nullopt;
   const RankedEffect& alone = ranked.effects[*first];
-  const double gain = EvidenceOf(pair.both, noise).all -
-                      EvidenceOf(ranked.refits[*first], noise).all +
+  const EffectRefit& of_first = ranked.refits[*first];
+  const double gain = EvidenceOf(pair.both, noise).all - EvidenceOf(of_first, noise).all -
+                      pair.second.scored.selection_penalty +
                       EvidenceOfNaturalValue(pair.second.scored.candidate, pair.second.sizes) +
                       EvidenceOfNaturalValue(alone.scored.candidate, pair.sizes_of_first) -
                       EvidenceOfNaturalValue(alone.scored.candidate, alone.sizes);
   if (!std::isfinite(gain)) return std::nullopt;
   const std::string& second = pair.second.scored.candidate.type;
+  const std::optional<size_t> other = ranked.FindUsable(second);
+  const bool predicts = Predicts(pair.both, ranked.baseline, noise) &&
+                        Predicts(pair.both, of_first, noise) &&
+                        (!other || Predicts(pair.both, ranked.refits[*other], noise));
   return WeighedPair{pair.first, second, gain,
                      SpaceAlong(pair.both.hypothesis, ranked, ranking, {pair.first, second}, noise),
-                     Predicts(pair.both, pair.alone, noise)};
+                     predicts};
 }
 
 }  // namespace

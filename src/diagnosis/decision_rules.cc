@@ -74,7 +74,7 @@ Naming NameFrom(const std::vector<HypothesisProbability>& posterior) {
   for (const size_t k : naming.kept)
     for (const std::string& name : posterior[k].names)
       if (std::count(naming.names.begin(), naming.names.end(), name) == 0 &&
-          !(share_nuisances && is_nuisance(name)))
+          (posterior[k].kind == Kind::kNuisance || !is_nuisance(name)))
         naming.names.push_back(name);
   const bool is_family = best.kind == Kind::kEffect && best.family != EffectFamily::kOther &&
                          holds([&](const auto& one) {

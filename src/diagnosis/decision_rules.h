@@ -30,7 +30,8 @@ inline constexpr double kToleratedModelError = 0.01;
 
 // Sets the probabilities from the evidence and the kind of each hypothesis, and sorts by them.
 // Refuted hypotheses get the probability 0. Evidence of an effect or nuisance contains its share of
-// the prior among its rivals already (NamedEvidence); that of a pair likewise.
+// the prior among its rivals already (NamedEvidence); that of a pair likewise. An effect with a
+// nuisance beside it is of the kind "effect", and its evidence contains the prior of the nuisance.
 void SetPosterior(std::vector<HypothesisProbability>* hypotheses);
 
 // Whether `name` is a nuisance of one of the hypotheses.
@@ -47,7 +48,8 @@ struct Naming {
   Level level = Level::kNothing;
   // The smallest set that reaches kStatedProbability: indices of the posterior, in its order.
   std::vector<size_t> kept;
-  // At the level kCommon what the kept hypotheses have in common, otherwise all that they contain.
+  // At the level kCommon what the kept hypotheses have in common, otherwise all that they contain
+  // but for nuisances beside an effect.
   std::vector<std::string> names;
 };
 Naming NameFrom(const std::vector<HypothesisProbability>& posterior);

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kSchemaVersion = 5;
+constexpr int kSchemaVersion = 6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr std::pair<HypothesisKind, const char*> kKinds[] = {
@@ -114,6 +114,7 @@ void SaveDecisionInput(const DecisionInput& input, const std::filesystem::path& 
                     {"baseline", SpaceToJson(input.baseline)},
                     {"refits", RefitsToJson(input.refits)},
                     {"pairs", pairs},
+                    {"failed_pairs", input.failed_pairs},
                     {"nuisances", nuisances},
                     {"adopted", input.adopted},
                     {"adopted_evidence", input.adopted_evidence},
@@ -158,6 +159,7 @@ DecisionInput LoadDecisionInput(const std::filesystem::path& folder) {
       input.pairs.push_back({one.at("first"), one.at("second"), one.at("gain"),
                              SpaceFromJson(one.at("space"), ProductsFile(folder, ++space)),
                              one.at("predicts")});
+    input.failed_pairs = value.at("failed_pairs").get<std::vector<std::array<std::string, 2>>>();
     for (const json& one : value.at("nuisances"))
       input.nuisances.push_back({one.at("name"), one.at("evidence")});
     input.adopted = value.at("adopted").get<std::vector<std::string>>();

@@ -86,7 +86,10 @@ std::vector<std::string> EffectsOfInterest(const Decision& decision, const Decis
         one.kind == HypothesisProbability::Kind::kEffect &&
         std::any_of(input.refits.begin(), input.refits.end(),
                     [&](const WeighedRefit& refit) { return refit.effect == one.names.front(); });
-    if (refitted && effects.size() < kMost) effects.push_back(one.names.front());
+    // An effect stands in several hypotheses: alone, and with a nuisance.
+    if (refitted && effects.size() < kMost &&
+        std::count(effects.begin(), effects.end(), one.names.front()) == 0)
+      effects.push_back(one.names.front());
   }
   return effects;
 }

@@ -19,14 +19,16 @@
 
 namespace lacuna {
 
-// A scored effect, and the result of fitting the model with it.
+// A scored effect, and the result of fitting the model with it, which SetRefit (variant_refit.h)
+// describes here.
 struct RankedEffect {
   ScoredEffect scored;
   bool refitted = false;      // the fields below are those of the refit
   std::string refit_message;  // why it is not usable; empty: it is usable
+  std::string unconverged;    // as in EffectRefit
   bool predicts = true;       // as Predicts (effect_refit.h) says
   ModelErrors errors;
-  double evidence = 0;                   // log Bayes factor against the model as it is
+  double evidence = 0;                   // as in RecordedRefit (record/diagnosis_record.h)
   double held_out_evidence = 0;          // the part of it that the held-out frames contribute
   double explained = 0;                  // share of the squared misfit
   std::optional<ByDataKind> removed;     // RemovedMisfit (removed_misfit.h) of the refit
@@ -62,7 +64,7 @@ struct Diagnosis : Conclusion {
   DecisionRecord decision;
   AgreementRecord agreement;  // of the recordings about the parameters of the fitted model
   // Over all frames, with the adopted nuisances at their best: of the baseline model, and of the
-  // best hypothesis.
+  // best-fitting one, i.e. the one with the smallest residual of it and of all refits.
   double baseline_rms_over_sigma = 0, best_rms_over_sigma = 0;
 };
 

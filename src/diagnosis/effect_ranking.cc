@@ -74,10 +74,22 @@ class HypothesisRanking {
     size_t best = 0;                    // index of the best of them
   };
 
+  // A nuisance that an earlier ranking has adopted: with its columns along this motion, or along
+  // that of the earlier ranking where it cannot be made anew.
+  struct DecidedNuisance {
+    const NuisanceCandidate* before;
+    std::vector<int> columns;
+
+    bool Is(const NuisanceCandidate& candidate) const {
+      return before->card.name == candidate.card.name && before->what == candidate.what;
+    }
+  };
+
+  void AddDecided();
   void AddEffects(const Eigen::MatrixXd& columns, PilotHypotheses pilots);
   void AddNuisance(NuisanceCandidate candidate);
-  // Whether an earlier ranking has adopted this nuisance, so that its columns are in the base.
-  bool IsDecided(const NuisanceCandidate& candidate) const;
+  // Makes the base of the parameters, the nuisances of every model and the decided ones.
+  void SetBase();
   // The residual, m, after a fit of these columns to white noise.
   Eigen::VectorXd ResidualAfter(const std::vector<int>& chosen) const;
   void ScoreNuisancesOfEveryModel();
@@ -106,8 +118,9 @@ class HypothesisRanking {
   std::vector<CandidateEffect> candidates_;
   LinearisedMisfit misfit_;
   Hypotheses hypotheses_;
-  std::vector<int> parameters_, base_;  // columns of the problem's parameters, and of the model
-  Eigen::Index always_ = 0;             // number of columns of nuisances that every model has
+  // Columns: of the problem's parameters, of the nuisances of every model, of all in the model.
+  std::vector<int> parameters_, always_, base_;
+  std::vector<DecidedNuisance> decided_nuisances_;
   std::vector<std::vector<int>> of_candidate_, of_nuisance_;  // columns
   EffectRanking ranking_;
   std::optional<WeighedColumns> weighed_;
@@ -134,8 +147,9 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
   misfit_ = problem.Linearise(values, true, directions);
   CHECK(misfit_.usable) << "the fitted model could be predicted before: " << misfit_.message;
 
-  parameters_ = base_ =
+  parameters_ =
       hypotheses_.Add(misfit_.jacobian.leftCols(known_), PriorsAbout(problem.parameters(), values));
+  AddDecided();
   ranking_.explained_misfit = study.explained_misfit;
   ranking_.scene.pilots =
       known.pilots ? *known.pilots : RunPilots(problem, values, misfit_, without);
@@ -147,11 +161,7 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
     if (nuisance.card.is_shared_in_scene) ranking_.scene.nuisances.push_back(nuisance);
     AddNuisance(std::move(nuisance));
   }
-  always_ = static_cast<Eigen::Index>(base_.size() - parameters_.size());
-
   if (decided != nullptr) {
-    const AdoptedNuisances further = decided->ranking.adopted.BeyondAlways();
-    base_ = Joined(base_, hypotheses_.Add(further.columns, further.priors));
     ranking_.noise = decided->noise;
   } else {
     // The noise is what remains when every hypothesis explains as much as it can.
@@ -160,10 +170,12 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
   }
   for (NuisanceCandidate& nuisance : GripNuisances(grips, grip_columns))
     AddNuisance(std::move(nuisance));
+  SetBase();
   const Eigen::VectorXd whitened =
       WhitenedRows(ResidualAfter(base_), misfit_, ranking_.noise.correlation_time, false);
   for (NuisanceCandidate& nuisance : RecordingNuisances(problem, misfit_, whitened))
     AddNuisance(std::move(nuisance));
+  SetBase();
   weighed_ = WeighColumns(misfit_, hypotheses_.columns, hypotheses_.priors,
                           ranking_.noise.correlation_time);
   ranking_.unknown_force = UnknownForceColumns(problem, values, misfit_);
@@ -184,21 +196,36 @@ void HypothesisRanking::AddEffects(const Eigen::MatrixXd& columns, PilotHypothes
   ranking_.untried = std::move(pilots.untried);
 }
 
+void HypothesisRanking::AddDecided() {
+  if (decided_ == nullptr) return;
+  for (const ScoredNuisance& nuisance : decided_->ranking.nuisances) {
+    const NuisanceCandidate& before = nuisance.candidate;
+    if (nuisance.adopted && !before.card.is_always_in_model)
+      decided_nuisances_.push_back({&before, hypotheses_.Add(before.columns, before.priors)});
+  }
+}
+
 void HypothesisRanking::AddNuisance(NuisanceCandidate candidate) {
-  if (IsDecided(candidate)) return;
+  for (DecidedNuisance& decided : decided_nuisances_) {
+    if (!decided.Is(candidate)) continue;
+    if (candidate.columns.cols() > 0)
+      decided.columns = hypotheses_.Add(candidate.columns, candidate.priors);
+    return;
+  }
+  for (const std::string& recording : candidate.left_out)
+    ranking_.untried.push_back(
+        {candidate.card.name, fmt::format("{} has more than {} frames: thin them out with `every`",
+                                          recording, kThresholds.nuisances.most_single_frames)});
+  if (candidate.columns.cols() == 0) return;
   const bool adopted = candidate.card.is_always_in_model;
   of_nuisance_.push_back(hypotheses_.Add(candidate.columns, candidate.priors));
   ranking_.nuisances.push_back({.candidate = std::move(candidate), .adopted = adopted});
-  if (adopted) base_ = Joined(base_, of_nuisance_.back());
+  if (adopted) always_ = Joined(always_, of_nuisance_.back());
 }
 
-bool HypothesisRanking::IsDecided(const NuisanceCandidate& candidate) const {
-  if (decided_ == nullptr || candidate.card.is_always_in_model) return false;
-  const std::vector<ScoredNuisance>& before = decided_->ranking.nuisances;
-  return std::any_of(before.begin(), before.end(), [&](const ScoredNuisance& nuisance) {
-    return nuisance.adopted && nuisance.candidate.card.name == candidate.card.name &&
-           nuisance.candidate.what == candidate.what;
-  });
+void HypothesisRanking::SetBase() {
+  base_ = Joined(parameters_, always_);
+  for (const DecidedNuisance& decided : decided_nuisances_) base_ = Joined(base_, decided.columns);
 }
 
 Eigen::VectorXd HypothesisRanking::ResidualAfter(const std::vector<int>& chosen) const {
@@ -299,7 +326,8 @@ int HypothesisRanking::ScoreNuisances(const LinearFit& before) {
 ScoredVariant HypothesisRanking::Variant(size_t candidate) const {
   const LinearFit fit =
       weighed_->fitted.Fit(Joined(base_, of_candidate_[candidate]), ranking_.noise.variance);
-  return {candidates_[candidate], scores_[candidate], values_ + fit.change.head(known_)};
+  return {candidates_[candidate], scores_[candidate], values_ + fit.change.head(known_),
+          -std::log(ReachableShare(candidates_[candidate], candidates_))};
 }
 
 // Other variants from which a refit may start. A support alone has several on each side of the
@@ -354,7 +382,7 @@ EffectRanking HypothesisRanking::Rank() && {
   ranking_.variants = static_cast<int>(candidates_.size());
   const std::vector<int> adopted(base_.begin() + known_, base_.end());
   ranking_.adopted.columns = hypotheses_.columns(Eigen::all, adopted);
-  ranking_.adopted.always = always_;
+  ranking_.adopted.always = static_cast<Eigen::Index>(always_.size());
   for (const int k : adopted) ranking_.adopted.priors.push_back(hypotheses_.priors[k]);
   ranking_.effects = ScoredEntries();
   ranking_.tried = Tried();
@@ -432,10 +460,6 @@ double SelectionPenalty(size_t rivals) {
 
 AdoptedNuisances AdoptedNuisances::Always() const {
   return {columns.leftCols(always), {priors.begin(), priors.begin() + always}, always};
-}
-
-AdoptedNuisances AdoptedNuisances::BeyondAlways() const {
-  return {columns.rightCols(columns.cols() - always), {priors.begin() + always, priors.end()}, 0};
 }
 
 AdoptedNuisances AdoptedNuisances::And(const NuisanceCandidate& nuisance) const {

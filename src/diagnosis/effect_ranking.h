@@ -40,7 +40,7 @@ struct EffectRanking {
   // The effects as they are ranked without the adopted nuisances (those of every model excepted);
   // empty if none was adopted.
   std::vector<ScoredEffect> without_adopted;
-  std::vector<UntriedEffect> untried;
+  std::vector<UntriedEffect> untried;     // and nuisances, by the names of their cards
   std::vector<ScoredNuisance> nuisances;  // in the order of the catalogue
   AdoptedNuisances adopted;
   NoiseLevel noise;
@@ -69,7 +69,9 @@ HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixX
                             bool base_has_adopted = true);
 
 // What an earlier ranking of the same recordings has decided: which nuisances are part of the
-// model, beside those of every model, and how large the noise is.
+// model, beside those of every model, and how large the noise is. The columns of these nuisances
+// are those along the motion of the new ranking; one that cannot be made there, such as a bad frame
+// that is not the worst one along that motion, keeps the columns of the earlier ranking.
 struct DecidedBase {
   const EffectRanking& ranking;
   NoiseLevel noise;

@@ -1,5 +1,7 @@
 #include "diagnosis/effect_refit.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -148,6 +150,50 @@ ExtendedFit FitExtended(const ExtendedProblem& extended, const std::string& stag
              : extended.CalibrateFrom(start, stage, hopeless_cost, progress);
 }
 
+std::string StageOf(const ScoredVariant* effect) {
+  return effect != nullptr ? "refit " + effect->candidate.type : "refit";
+}
+
+// What a fit says of its effect, of the fitted frames and of all frames.
+EffectRefit FinishedRefit(ExtendedFit fit, const ExtendedProblem& extended,
+                          const BaselineModel& baseline, const ScoredVariant* effect,
+                          const AdoptedNuisances& adopted) {
+  const LinearisedMisfit& misfit = baseline.misfit;
+  const CalibrationProblem& with = extended.problem();
+  EffectRefit refit;
+  refit.calibration = std::move(fit.calibration);
+  const Calibration& calibration = refit.calibration;
+  if (calibration.estimates.empty()) {
+    refit.message = calibration.message;
+    return refit;
+  }
+  if (!calibration.usable) refit.unconverged = calibration.message;
+  // With markers, one prediction serves both.
+  LinearisedMisfit own_misfit = std::move(fit.misfit);
+  if (!own_misfit.usable && !with.HasScans())
+    own_misfit = with.Linearise(calibration.parameters, true, {}, nullptr, &misfit);
+  const LinearisedMisfit* known = own_misfit.usable ? &own_misfit : nullptr;
+  refit.hypothesis = HypothesisAt(with, calibration.parameters, adopted, misfit, nullptr, known);
+  refit.errors = ErrorsOf(with, calibration.parameters, known);
+  if (effect != nullptr) {
+    refit.effect = extended.OwnParameters(calibration.parameters);
+    refit.model = calibration.parameters.head(
+        static_cast<Eigen::Index>(baseline.problem.study().fitted.size()));
+    refit.sizes = extended.SizesIn(calibration);
+    refit.others = extended.OthersIn(calibration);
+  }
+  refit.message = refit.hypothesis.misfit.message;
+  if (!refit.hypothesis.misfit.usable) return refit;
+  refit.amounts = extended.AmountsAt(refit.hypothesis.misfit);
+  const Eigen::VectorXd residual =
+      refit.hypothesis.misfit.residual + adopted.columns * refit.amounts;
+  const Eigen::VectorXd white = WhitenedRows(residual, misfit, 0, false);
+  refit.errors.without_nuisances = HeldOutInNoise(white, misfit);
+  SettleRefit(with, adopted, baseline, {calibration.parameters, std::move(refit.hypothesis)},
+              &refit);
+  return refit;
+}
+
 }  // namespace
 
 bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& refit, double noise,
@@ -172,7 +218,8 @@ bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLe
   // Of recordings in which the effect is missing, one in so many at most refutes it. More: wrong
   // effects that fail later in the motion stay possible.
   constexpr double kOneIn = 100;
-  return !without.errors.has_held_out || PredictiveGain(with, without, noise) >= -std::log(kOneIn);
+  return !with.unconverged.empty() || !without.errors.has_held_out ||
+         PredictiveGain(with, without, noise) >= -std::log(kOneIn);
 }
 
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
@@ -183,56 +230,29 @@ bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
 EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off, RefitFrom from,
                   const EffectRefit* without, double hopeless_cost) {
-  const LinearisedMisfit& misfit = baseline.misfit;
   const ExtendedProblem extended(baseline, effect, adopted);
-  const CalibrationProblem& with = extended.problem();
   Eigen::VectorXd refitted;
   if (effect != nullptr && without != nullptr && without->message.empty())
     refitted = without->calibration.parameters;
-  ExtendedFit fit = FitExtended(
-      extended, effect != nullptr ? "refit " + effect->candidate.type : "refit",
-      effect != nullptr && is_far_off, from, refitted, hopeless_cost, baseline.progress);
-  EffectRefit refit;
-  refit.calibration = std::move(fit.calibration);
-  if (refit.calibration.estimates.empty()) {
-    refit.message = refit.calibration.message;
-  } else {
-    // With markers, one prediction serves both.
-    LinearisedMisfit own_misfit = std::move(fit.misfit);
-    if (!own_misfit.usable && !with.HasScans())
-      own_misfit = with.Linearise(refit.calibration.parameters, true, {}, nullptr, &misfit);
-    const LinearisedMisfit* known = own_misfit.usable ? &own_misfit : nullptr;
-    refit.hypothesis =
-        HypothesisAt(with, refit.calibration.parameters, adopted, misfit, nullptr, known);
-    refit.errors = ErrorsOf(with, refit.calibration.parameters, known);
-    if (effect != nullptr) {
-      refit.effect = extended.OwnParameters(refit.calibration.parameters);
-      refit.model = refit.calibration.parameters.head(
-          static_cast<Eigen::Index>(baseline.problem.study().fitted.size()));
-      refit.sizes = extended.SizesIn(refit.calibration);
-      refit.others = extended.OthersIn(refit.calibration);
-    }
-    refit.message = refit.hypothesis.misfit.message;
-    if (refit.hypothesis.misfit.usable) {
-      refit.amounts = extended.AmountsAt(refit.hypothesis.misfit);
-      const Eigen::VectorXd residual =
-          refit.hypothesis.misfit.residual + adopted.columns * refit.amounts;
-      const Eigen::VectorXd white = WhitenedRows(residual, misfit, 0, false);
-      refit.errors.without_nuisances = HeldOutInNoise(white, misfit);
-      SettleRefit(with, adopted, baseline,
-                  {refit.calibration.parameters, std::move(refit.hypothesis)}, &refit);
-    }
-  }
-  return refit;
+  ExtendedFit fit = FitExtended(extended, StageOf(effect), effect != nullptr && is_far_off, from,
+                                refitted, hopeless_cost, baseline.progress);
+  return FinishedRefit(std::move(fit), extended, baseline, effect, adopted);
 }
 
-EffectRefit BesideNuisances(const BaselineModel& baseline, const ScoredVariant& effect,
-                            const AdoptedNuisances& adopted, EffectRefit refit) {
+EffectRefit RefitFromValues(const BaselineModel& baseline, const ScoredVariant& effect,
+                            const AdoptedNuisances& adopted, const Eigen::VectorXd& values,
+                            double hopeless_cost) {
   const ExtendedProblem extended(baseline, &effect, adopted);
-  Settled start{refit.values_at_fit, refit.at_fit};
-  SetNuisances(adopted, baseline.misfit, &start.hypothesis);
-  SettleRefit(extended.problem(), adopted, baseline, std::move(start), &refit);
-  return refit;
+  const std::vector<CalibratedParameter>& parameters = extended.problem().parameters();
+  CHECK_EQ(values.size(), static_cast<Eigen::Index>(parameters.size()));
+  Eigen::VectorXd start = values;
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    double& value = start[static_cast<Eigen::Index>(k)];
+    value = std::clamp(value, parameters[k].min, parameters[k].max);
+  }
+  ExtendedFit fit =
+      extended.CalibrateFrom(start, StageOf(&effect), hopeless_cost, baseline.progress);
+  return FinishedRefit(std::move(fit), extended, baseline, &effect, adopted);
 }
 
 }  // namespace lacuna

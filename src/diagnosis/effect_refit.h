@@ -26,6 +26,9 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
 
 struct EffectRefit {
   std::string message;  // why the refit is not usable; empty: it is usable
+  // Why the fit ended before it had converged; empty: it has converged. What it has found is less
+  // than the effect can explain, so that it refutes nothing (Predicts).
+  std::string unconverged;
   Calibration calibration;
   Eigen::VectorXd amounts;               // of the adopted nuisances, at the end of the fit
   Eigen::VectorXd effect;                // all parameters of the effect, in the order of its card
@@ -67,7 +70,8 @@ double PredictiveGain(const EffectRefit& with, const EffectRefit& without, const
 
 // Whether that is compatible with the effect being missing. If it is, the gain is below −ln 100 in
 // fewer than one recording in 100, whatever the size of the effect: exp(−gain) then is a ratio of
-// densities with the mean 1 (Markov's inequality). True where nothing is held out.
+// densities with the mean 1 (Markov's inequality). True where nothing is held out, and if the refit
+// has not converged: other parameters may predict better.
 bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise);
 
 // Whether the held-out error with the effect is clearly larger than without it, which shows that
@@ -90,11 +94,12 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                   RefitFrom from = RefitFrom::kFirstOrder, const EffectRefit* without = nullptr,
                   double hopeless_cost = std::numeric_limits<double>::infinity());
 
-// A refit beside other columns of the adopted nuisances, which may have been computed along another
-// motion: the parameters are settled anew beside them, with the derivatives that the refit has. Its
-// errors and estimates stay those of the fit. `effect` is the variant that was refitted.
-EffectRefit BesideNuisances(const BaselineModel& baseline, const ScoredVariant& effect,
-                            const AdoptedNuisances& adopted, EffectRefit refit);
+// The same fit from these values of the problem's parameters, at which another fit of the model
+// with the effect has ended: one that had not converged, or one beside other nuisances or with a
+// further effect. Values beyond the bounds of the parameters are moved to them.
+EffectRefit RefitFromValues(const BaselineModel& baseline, const ScoredVariant& effect,
+                            const AdoptedNuisances& adopted, const Eigen::VectorXd& values,
+                            double hopeless_cost = std::numeric_limits<double>::infinity());
 
 }  // namespace lacuna
 

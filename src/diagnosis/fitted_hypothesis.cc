@@ -96,8 +96,7 @@ BestStep BestNear(const FittedHypothesis& hypothesis,
   return {unit.cwiseProduct(step), model.cost * (model.GainOf(step) - model.GainOf(of_nuisances))};
 }
 
-}  // namespace
-
+// Puts the columns of the adopted nuisances after those of the parameters.
 void SetNuisances(const AdoptedNuisances& adopted, const LinearisedMisfit& correspondences,
                   FittedHypothesis* hypothesis) {
   const Eigen::MatrixXd& nuisances = adopted.columns;
@@ -114,6 +113,8 @@ void SetNuisances(const AdoptedNuisances& adopted, const LinearisedMisfit& corre
           .FitAll(1);
   hypothesis->residual += nuisances * fit.change;
 }
+
+}  // namespace
 
 FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                               const AdoptedNuisances& adopted,
@@ -169,6 +170,16 @@ Eigen::VectorXd WhitenedResidual(const FittedHypothesis& hypothesis, const Noise
   const Eigen::MatrixXd columns =
       WhitenedRows(misfit.jacobian.rightCols(adopted), misfit, noise.correlation_time, false);
   return residual + columns * FitAdopted(hypothesis, residual, columns, noise).change;
+}
+
+double RmsOverSigma(const Eigen::VectorXd& residual, const LinearisedMisfit& misfit) {
+  const Eigen::VectorXd white = WhitenedRows(residual, misfit, 0, false);
+  const Eigen::Index observed = std::max<Eigen::Index>(1, ObservedRows(misfit));
+  return std::sqrt(white.squaredNorm() / static_cast<double>(observed));
+}
+
+double RmsOverSigma(const FittedHypothesis& hypothesis) {
+  return RmsOverSigma(hypothesis.residual, hypothesis.misfit);
 }
 
 Settled Settle(const CalibrationProblem& problem, Settled start, const AdoptedNuisances& adopted,

@@ -39,9 +39,10 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
 // the adopted nuisances at their best amounts.
 Eigen::VectorXd WhitenedResidual(const FittedHypothesis& hypothesis, const NoiseLevel& noise);
 
-// Replaces the columns of the adopted nuisances of a hypothesis, after those of the parameters.
-void SetNuisances(const AdoptedNuisances& adopted, const LinearisedMisfit& correspondences,
-                  FittedHypothesis* hypothesis);
+// The rms of a residual over all observed rows, over σ; that of a hypothesis, with its adopted
+// nuisances at their best amounts.
+double RmsOverSigma(const Eigen::VectorXd& residual, const LinearisedMisfit& misfit);
+double RmsOverSigma(const FittedHypothesis& hypothesis);
 
 // The model at `values`, with the residuals between the same points as in `correspondences`. Given
 // `near`, its Jacobian is used instead of a new one; given `known`, the misfit with Jacobian at

@@ -95,19 +95,14 @@ PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& sc
       const int index = parameter.places.front().index;
       const ParameterCard& card = own.effect->Card().parameters[index];
       CalibratedParameter& prior = parameter.prior;
-      const auto known = own.known.find(card.name);
-      if (known != own.known.end() && known->second.IsHeld()) continue;
-      if (own.IsPilot()) {
-        const auto refined = own.refined.find(card.name);
-        if (refined == own.refined.end()) continue;
-        prior.prior_deviation = refined->second;
-      }
+      if (!IsMovedByRefit(own, static_cast<size_t>(index))) continue;
+      if (own.IsPilot()) prior.prior_deviation = own.refined.at(card.name);
       const bool is_amplitude = std::count(own.amplitude.begin(), own.amplitude.end(), index) > 0;
       if (is_amplitude && !prior.log_scale) {
         prior.prior_mean = card.null_value;
         prior.prior_deviation = PlausibleScale(card);
       }
-      if (known != own.known.end())
+      if (const auto known = own.known.find(card.name); known != own.known.end())
         KeepWithin(known->second, &prior);
       else
         KeepPlausible(card, &prior);

@@ -56,6 +56,8 @@ struct NuisanceCard {
   bool is_shared_in_scene = false;
   // Each frame has amounts of its own: those of the fitted frames predict nothing in held-out ones.
   bool acts_on_single_frames = false;
+  // Recordings with more frames than NuisanceThresholds::most_single_frames are left out.
+  bool needs_few_frames = false;
   // The nuisance changes natural frequencies, which a linear column follows for a short time only.
   // First order therefore underrates it, also in a model that is fitted with it.
   bool outgrows_first_order = false;
@@ -74,6 +76,9 @@ struct NuisanceCandidate {
   // What is not known about C: an error of the size of these columns, in any direction. Without
   // columns, C is known.
   Eigen::MatrixXd unknown = {};
+  // The names of the recordings that C leaves out because they have more frames than
+  // NuisanceThresholds::most_single_frames. If C has no columns, the nuisance cannot be tried.
+  std::vector<std::string> left_out = {};
 };
 
 }  // namespace lacuna

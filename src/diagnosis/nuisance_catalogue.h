@@ -53,7 +53,8 @@ struct RecordingContext {
 std::vector<LinearPrior> RigidMotionPriors();
 
 // The makers fill everything but the card, which comes from the entry; without a result the
-// nuisance does not apply or cannot be simulated. A maker may throw Interrupted.
+// nuisance does not apply or cannot be simulated. A candidate without columns says which recordings
+// have too many frames for it (NuisanceCandidate::left_out). A maker may throw Interrupted.
 using ModelNuisance = std::optional<NuisanceCandidate> (*)(const NuisanceContext& context);
 using GripNuisance = NuisanceCandidate (*)(const GripMotions::Grip& grip,
                                            const Eigen::MatrixXd& grip_columns);

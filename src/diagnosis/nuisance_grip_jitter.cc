@@ -27,6 +27,7 @@ NuisanceCard Card() {
   card.advice = "measure the grips' motion more exactly, or with more markers";
   card.source = NuisanceSource::kGrip;
   card.is_always_in_model = true;
+  card.needs_few_frames = true;
   return card;
 }
 
@@ -84,10 +85,13 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   for (const LinearisedMisfit::Part& part : at.misfit.parts) {
     const Recording& recording = at.problem.models()[part.recording].item().recording;
     if (!part.IsOfPoints()) continue;
-    if (part.layout.times.size() > kThresholds.nuisances.most_single_frames) continue;
     for (const GripMotions::Grip& own : at.grips.grips) {
       const RecordedGrip* grip = RecordedAs(recording, own.grip);
       if (grip == nullptr || grip->motion != GripMotion::kFollowsMarkers) continue;
+      if (part.layout.times.size() > kThresholds.nuisances.most_single_frames) {
+        candidate.left_out.push_back(at.problem.models()[part.recording].item().name);
+        break;
+      }
       const std::vector<int> markers = MarkersOf(*grip, recording);
       const Eigen::Matrix3Xd places = recording.markers.places(Eigen::all, markers);
       AppendFrameByFrame(
@@ -101,7 +105,7 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
     }
   }
   const Eigen::Index count = candidate.columns.cols();
-  if (count == 0) return std::nullopt;
+  if (count == 0 && candidate.left_out.empty()) return std::nullopt;
   candidate.priors.assign(static_cast<size_t>(count), {0, 1, false});
   return candidate;
 }

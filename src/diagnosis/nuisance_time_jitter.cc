@@ -15,6 +15,7 @@ NuisanceCard Card() {
       "The residual is proportional to the velocity, with another factor in each frame.";
   card.advice = "check the camera's clock and its exposure";
   card.acts_on_single_frames = true;
+  card.needs_few_frames = true;
   card.trial.control = "time_jitter";
   card.trial.control_position = 4;
   card.trial.time_deviation = 0.0015;
@@ -22,9 +23,12 @@ NuisanceCard Card() {
 }
 
 std::optional<NuisanceCandidate> Make(const RecordingContext& at) {
-  if (at.part.layout.times.size() > kThresholds.nuisances.most_single_frames) return std::nullopt;
   NuisanceCandidate candidate;
   candidate.what = "the times of single frames of " + at.Name();
+  if (at.part.layout.times.size() > kThresholds.nuisances.most_single_frames) {
+    candidate.left_out = {at.Name()};
+    return candidate;
+  }
   candidate.columns.resize(at.misfit.residual.size(), at.Frames());
   for (Eigen::Index own = 0; own < at.Frames(); ++own)
     candidate.columns.col(own) = at.Column([&](Eigen::Index frame, int series) {

@@ -6,7 +6,6 @@
 
 #include "diagnosis/decision_maker.h"
 #include "diagnosis/decision_rules.h"
-#include "diagnosis/effect_refit.h"
 #include "diagnosis/pair_refit.h"
 #include "diagnosis/thresholds.h"
 
@@ -38,10 +37,9 @@ bool IsFitted(const std::vector<FittedPair>& pairs, const std::string& a, const 
                      [&](const FittedPair& one) { return one.IsOf(a, b); });
 }
 
-bool IsAmong(const std::vector<PairToFit>& pairs, const PairToFit& pair) {
-  return std::any_of(pairs.begin(), pairs.end(), [&](const PairToFit& one) {
-    return (one.first == pair.first && one.further == pair.further) ||
-           (one.first == pair.further && one.further == pair.first);
+bool HasFailed(const OpenDecision& open, const std::string& a, const std::string& b) {
+  return std::any_of(open.failed_pairs.begin(), open.failed_pairs.end(), [&](const auto& pair) {
+    return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
   });
 }
 
@@ -59,8 +57,8 @@ bool RankAlongRefit(const std::string& effect, OpenDecision* open) {
   return true;
 }
 
-// Fits a pair and decides again. Returns whether it could be fitted; if not, it is noted.
-bool AddPair(const PairToFit& wanted, OpenDecision* open) {
+// Fits a pair and decides again. A pair that cannot be fitted is no hypothesis any more.
+void AddPair(const PairToFit& wanted, OpenDecision* open) {
   RefittedRanking& ranked = *open->ranked;
   const std::optional<size_t> k = ranked.FindUsable(wanted.first);
   std::optional<FittedPair> pair;
@@ -68,22 +66,16 @@ bool AddPair(const PairToFit& wanted, OpenDecision* open) {
     pair = FitPair(open->context.model, ranked.effects[*k].scored, ranked.refits[*k],
                    wanted.further, *ranked.along, wanted.first == ranked.along_type);
   if (!pair) {
-    open->failed.push_back(wanted);
-    return false;
+    open->failed_pairs.push_back({wanted.first, wanted.further});
+    open->DecideAgain();
+    return;
   }
-  // The fit of the first effect alone, from which that of the pair has started, may have found a
-  // better minimum than its refit. The pair must not count that for the second effect.
-  EffectRefit& own = ranked.refits[*k];
-  const NoiseLevel& noise = open->noise->level;
-  if (EvidenceOf(pair->alone, noise).all > EvidenceOf(own, noise).all) {
-    own.at_fit = pair->alone.at_fit;
-    own.values_at_fit = pair->alone.values_at_fit;
-    own.hypothesis = pair->alone.hypothesis;
-  }
+  // With the help of the second effect, the fit may have found better parameters for the first one,
+  // alone, too. The pair must not count that for the second effect.
+  RefitAgain(open->context, *k, pair->values_of_first, open->noise->level, &ranked);
   ranked.pairs.push_back(*std::move(pair));
   *open->noise = WeighRefits(open->context, &ranked);
   open->DecideAgain();
-  return true;
 }
 
 }  // namespace
@@ -92,6 +84,7 @@ void OpenDecision::DecideAgain() {
   for (;;) {
     WeighNuisances(*ranked, *noise, &diagnosis->nuisances);
     diagnosis->decision_input = MakeDecisionInput(context, *ranked, *noise, *diagnosis);
+    diagnosis->decision_input.failed_pairs = failed_pairs;
     decision = Decide(diagnosis->decision_input);
     const int before = ranked->count;
     RefitAll(context, WithoutRefit(decision, *ranked), ranked);
@@ -110,7 +103,7 @@ void RankAlongBest(OpenDecision* open) {
       open->DecideAgain();
     } else if (best.kind == Kind::kPair && !IsFitted(ranked.pairs, best.names[0], best.names[1])) {
       const bool is_first = best.names[0] == ranked.along_type;
-      if (!AddPair({ranked.along_type, best.names[is_first ? 1 : 0]}, open)) break;
+      AddPair({ranked.along_type, best.names[is_first ? 1 : 0]}, open);
     } else {
       break;
     }
@@ -131,7 +124,8 @@ void FitRivalPairs(OpenDecision* open) {
       next = RivalsOf(best, ranked, open->diagnosis->decision_input.families);
       std::erase_if(next, [&](const PairToFit& one) { return one.lost > hopeless; });
     }
-    std::erase_if(next, [&](const PairToFit& one) { return IsAmong(open->failed, one); });
+    std::erase_if(next,
+                  [&](const PairToFit& one) { return HasFailed(*open, one.first, one.further); });
     if (next.empty()) break;
     AddPair(next.front(), open);
   }
@@ -155,12 +149,12 @@ std::vector<PairToFit> RivalsOf(const HypothesisProbability& pair, const Refitte
     for (const RankedEffect& other : ranked.effects) {
       const std::string& type = other.scored.candidate.type;
       if (pair.Contains(type) || FamilyOf(families, type) != family ||
-          IsFitted(ranked.pairs, kept, type) || (other.HasUsableRefit() && !other.predicts))
+          IsFitted(ranked.pairs, kept, type))
         continue;
       if (kept == ranked.along_type) {
         if (first_order(type) >= kThresholds.refit.least_evidence)
           rivals.push_back({kept, type, first_order(replaced) - first_order(type)});
-      } else if (other.HasUsableRefit()) {
+      } else if (other.HasUsableRefit() && other.predicts) {
         rivals.push_back({type, kept, alone(replaced) - alone(type)});
       }
     }

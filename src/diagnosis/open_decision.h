@@ -3,6 +3,7 @@
 #ifndef LACUNA_DIAGNOSIS_OPEN_DECISION_H_
 #define LACUNA_DIAGNOSIS_OPEN_DECISION_H_
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -32,7 +33,7 @@ struct OpenDecision {
   RefitNoise* noise;
   Diagnosis* diagnosis;  // its decision_input and nuisances are set
   Decision decision;
-  std::vector<PairToFit> failed;  // pairs that could not be fitted
+  std::vector<std::array<std::string, 2>> failed_pairs;
 
   const HypothesisProbability& Best() const { return decision.record.probabilities.front(); }
   // Decides upon what has been fitted, and refits what the decision would state without a refit,
@@ -45,13 +46,14 @@ struct OpenDecision {
 void RankAlongBest(OpenDecision* open);
 
 // If the most probable hypothesis is a pair that was fitted, fits its rivals as well. The
-// first-order value of a pair is kept low on purpose (decision.cc), so that a fitted pair would
+// first-order value of a pair is kept low on purpose (combinations.cc), so that a fitted pair would
 // have an advantage over them.
 void FitRivalPairs(OpenDecision* open);
 
 // The pairs in which another effect of its family replaces one effect of `pair`, and which have not
-// been fitted, by what the replacement costs, the least first. Effects that the held-out frames
-// refute replace none. `ranked` has columns along the motion of a refit.
+// been fitted, by what the replacement costs, the least first. An effect that the held-out frames
+// refute may become the further one of a pair, which is judged by its own prediction, but not the
+// first one. `ranked` has columns along the motion of a refit.
 std::vector<PairToFit> RivalsOf(const HypothesisProbability& pair, const RefittedRanking& ranked,
                                 const std::map<std::string, EffectFamily>& families);
 

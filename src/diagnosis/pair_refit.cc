@@ -100,14 +100,19 @@ std::optional<FittedPair> FitPair(const BaselineModel& baseline, const ScoredVar
     pair.second.scored.expected_values = values;
     for (ScoredVariant& other : pair.second.scored.elsewhere) other.expected_values = values;
   }
-  pair.alone = Refit(model, nullptr, ranking.adopted, /*is_far_off=*/false);
-  if (!pair.alone.message.empty()) return std::nullopt;
-  pair.both =
-      RefitEffect({model, ranking}, ranking.adopted, pair.alone, /*is_found=*/true, &pair.second);
-  if (!pair.both.message.empty()) return std::nullopt;
+  auto [variant, both] =
+      RefitEffect({model, ranking}, ranking.adopted, refit, /*is_found=*/true, pair.second.scored);
+  if (!both.message.empty()) return std::nullopt;
+  SetRefit(std::move(variant), both, &pair.second);
+  pair.both = std::move(both);
   const size_t shared = baseline.problem.study().fitted.size();
   for (size_t k = 0; k < first.candidate.amplitude.size(); ++k)
     pair.sizes_of_first.push_back(pair.both.calibration.estimates[shared + k]);
+  // The parameters of the second effect stand before those of the recordings.
+  const Eigen::Index own = static_cast<Eigen::Index>(study.fitted.size());
+  pair.values_of_first.resize(values.size());
+  pair.values_of_first << pair.both.values_at_fit.head(own),
+      pair.both.values_at_fit.tail(values.size() - own);
   return pair;
 }
 

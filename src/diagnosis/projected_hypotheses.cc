@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace lacuna {
 namespace {
@@ -75,16 +76,6 @@ ProjectedHypotheses::ProjectedHypotheses(const HypothesisSpace& space,
   }
 }
 
-double ProjectedHypotheses::ForceMisfit(const Eigen::VectorXd& projected) const {
-  for (const WeighedHypothesis& hypothesis : space_.hypotheses) {
-    if (!IsForce(hypothesis)) continue;
-    const Eigen::VectorXd along = force_.vectors.transpose() * projected(hypothesis.columns);
-    return (along.array().square() / force_.values.array()).sum() / space_.variance -
-           static_cast<double>(force_.values.size());
-  }
-  return 0;
-}
-
 double ProjectedHypotheses::LogBayesFactorOfForce(const Eigen::VectorXd& toward) const {
   const Eigen::ArrayXd squares = (force_.vectors.transpose() * toward).array().square();
   const Eigen::ArrayXd values = force_.values.array();
@@ -124,6 +115,45 @@ Eigen::VectorXd ProjectedHypotheses::Project(const Eigen::VectorXd& toward) cons
 double ProjectedHypotheses::Misfit(const ResidualProducts& residual) const {
   const Eigen::VectorXd taken = residual.toward(taken_);
   return std::max(0.0, residual.squares - taken.dot(inverse_ * taken));
+}
+
+double ProjectedHypotheses::MisfitOfGivenNoise(const ResidualProducts& residual) const {
+  if (space_.variance == 1) return Misfit(residual);
+  const Eigen::VectorXd taken = residual.toward(taken_);
+  const Eigen::MatrixXd inverse = RegularInverse(space_.model.products()(taken_, taken_),
+                                                 InverseSquares(space_.model.priors(), taken_));
+  return std::max(0.0, residual.squares - taken.dot(inverse * taken));
+}
+
+ResidualProducts ProjectedHypotheses::ProjectAll(const ResidualProducts& residual) const {
+  return {Misfit(residual), Project(residual.toward)};
+}
+
+Eigen::Index ProjectedHypotheses::Freedom() const {
+  const auto without_prior = std::count_if(taken_.begin(), taken_.end(), [&](int column) {
+    return !std::isfinite(space_.model.Prior(column).deviation);
+  });
+  return std::max<Eigen::Index>(1, space_.rows - without_prior);
+}
+
+HypothesisSpace ProjectedHypotheses::Marginal() const {
+  ResidualProducts residual = ProjectAll({space_.model.squares(), space_.model.toward()});
+  Eigen::MatrixXd products = products_;
+  for (const int column : taken_) {
+    products.row(column).setZero();
+    products.col(column).setZero();
+  }
+  // What remains of an invisible column is rounding.
+  for (Eigen::Index k = 0; k < products.cols(); ++k)
+    if (products(k, k) == 0) residual.toward[k] = 0;
+  HypothesisSpace marginal;
+  marginal.model = LinearGaussianModel::FromProducts(residual.squares, std::move(residual.toward),
+                                                     std::move(products), space_.model.priors());
+  marginal.variance = space_.variance;
+  marginal.rows = Freedom();
+  marginal.model_error = space_.model_error;
+  marginal.hypotheses = space_.hypotheses;
+  return marginal;
 }
 
 Eigen::VectorXd ProjectedHypotheses::LogBayesFactors(const Eigen::VectorXd& projected) const {

@@ -14,6 +14,12 @@
 // s is
 //   ½ Σ c²/(λ + v/s²)/v − ½ Σ ln(1 + s² λ/v).
 //
+// If the taken columns are all that is missing, with amounts from their priors, the residual has
+// the covariance C = v I + B P Bᵀ, and by Woodbury's identity
+//   t' = v Aᵀ C⁻¹ r,   S = v Aᵀ C⁻¹ A,   min_b { ‖r + B b‖² + v bᵀP⁻¹b } = v rᵀ C⁻¹ r.
+// These are therefore the products of white noise with the variance v, in as many rows as the
+// residual has less the number of taken columns without a prior (Marginal()).
+//
 // The matrices depend on the columns alone, so that thousands of simulated residuals cost little.
 #ifndef LACUNA_DIAGNOSIS_PROJECTED_HYPOTHESES_H_
 #define LACUNA_DIAGNOSIS_PROJECTED_HYPOTHESES_H_
@@ -44,14 +50,22 @@ class ProjectedHypotheses {
 
   // t'
   Eigen::VectorXd Project(const Eigen::VectorXd& toward) const;
-  // min over the taken columns of ‖r + B b‖² + v bᵀP⁻¹b.
+  // The misfit and t'.
+  ResidualProducts ProjectAll(const ResidualProducts& residual) const;
+  // The misfit: min over the taken columns of ‖r + B b‖² + v bᵀP⁻¹b.
   double Misfit(const ResidualProducts& residual) const;
+  // The misfit with the noise with which the rows were whitened, i.e. with v = 1.
+  double MisfitOfGivenNoise(const ResidualProducts& residual) const;
+  // The number of rows less that of the taken columns without a prior, at least 1: the expected
+  // misfit in units of v.
+  Eigen::Index Freedom() const;
+  // The space after the taken columns have been integrated out: with the misfit, t' and S as its
+  // products, Freedom() rows and an empty base. The products of the taken columns are 0; all
+  // columns and hypotheses keep their places.
+  HypothesisSpace Marginal() const;
   // The logarithm of the Bayes factor of each hypothesis of the space against the taken columns
   // alone, from t'. 0 for a hypothesis whose columns are taken.
   Eigen::VectorXd LogBayesFactors(const Eigen::VectorXd& projected) const;
-  // The misfit, in units of v, that an unknown force could remove without any prior, less what it
-  // removes of noise on average; 0 where the space has none.
-  double ForceMisfit(const Eigen::VectorXd& projected) const;
   // The amounts with the largest posterior density of a hypothesis that is not an unknown force,
   // and their covariance matrix.
   struct Amounts {
@@ -61,6 +75,7 @@ class ProjectedHypotheses {
   Amounts AmountsOf(size_t hypothesis, const Eigen::VectorXd& projected) const;
   // S
   const Eigen::MatrixXd& products() const { return products_; }
+  const HypothesisSpace& space() const { return space_; }
 
  private:
   struct Own {

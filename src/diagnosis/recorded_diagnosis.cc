@@ -24,6 +24,7 @@ std::vector<RecordedSize> SizesOf(const RankedEffect& effect) {
 RecordedRefit RefitOf(const RankedEffect& effect) {
   RecordedRefit refit;
   refit.message = effect.refit_message;
+  refit.unconverged = effect.unconverged;
   refit.evidence = effect.evidence;
   refit.held_out_evidence = effect.held_out_evidence;
   refit.explained = effect.explained;

@@ -9,6 +9,7 @@
 #include "diagnosis/adequacy.h"
 #include "diagnosis/decision.h"
 #include "diagnosis/decision_rules.h"
+#include "scan/random_bits.h"
 
 namespace lacuna {
 namespace {
@@ -26,15 +27,47 @@ struct NullOfVariant {
   double unknown_force = 0, further = 0, variance = 0;
 };
 
+// The products of the residual that an effect leaves in a model without it, and noise:
+// r = ε − C a.
+ResidualProducts WithEffect(const HypothesisSpace& space, const FoundEffect& effect,
+                            ResidualProducts noise) {
+  if (effect.columns.empty()) return noise;
+  const Eigen::MatrixXd& products = space.model.products();
+  noise.squares += effect.amounts.dot(products(effect.columns, effect.columns) * effect.amounts) -
+                   2 * effect.amounts.dot(noise.toward(effect.columns));
+  noise.toward -= products(Eigen::all, effect.columns) * effect.amounts;
+  return noise;
+}
+
+// Amounts of these columns from their priors.
+Eigen::VectorXd PriorAmounts(const HypothesisSpace& space, const std::vector<int>& columns,
+                             uint64_t seed, uint64_t number) {
+  Eigen::VectorXd amounts = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(columns.size()));
+  for (size_t k = 0; k < columns.size(); ++k) {
+    const double deviation = space.model.Prior(columns[k]).deviation;
+    if (std::isfinite(deviation))
+      amounts[static_cast<Eigen::Index>(k)] =
+          deviation * Normal(RandomBits({seed, number, static_cast<uint64_t>(columns[k])}));
+  }
+  return amounts;
+}
+
+// All products are those after the base of the decision's input has been integrated out.
 class SimulatedDecisions {
  public:
   explicit SimulatedDecisions(const DecisionInput& input)
-      : input_(input), space_(input.baseline), beside_nothing_(space_), noise_(space_) {
+      : input_(input),
+        space_(ProjectedHypotheses(input.baseline).Marginal()),
+        beside_nothing_(space_) {
+    const NoiseDraws noise(space_);
     for (int k = 0; k < kDraws; ++k)
-      draws_.push_back(noise_.Draw(input.seed + 2, static_cast<uint64_t>(k)));
+      draws_.push_back(noise.Draw(input.seed + 2, static_cast<uint64_t>(k)));
   }
 
-  const ResidualProducts& draw(int k) const { return draws_[static_cast<size_t>(k)]; }
+  // A residual in which this effect is missing.
+  ResidualProducts Draw(const FoundEffect& effect, int k) const {
+    return WithEffect(space_, effect, draws_[static_cast<size_t>(k)]);
+  }
 
   // What the rules say of a residual: names, or none; whether something unknown is left.
   struct Outcome {
@@ -42,8 +75,8 @@ class SimulatedDecisions {
     bool is_unknown_left = false;
   };
   Outcome Decide(const ResidualProducts& residual) {
-    const std::vector<NamedEvidence> evidence = SumVariants(
-        space_, beside_nothing_.LogBayesFactors(beside_nothing_.Project(residual.toward)));
+    const std::vector<NamedEvidence> evidence =
+        SumVariants(space_, beside_nothing_.LogBayesFactors(residual.toward));
     std::vector<HypothesisProbability> posterior =
         HypothesesOf(evidence, input_.families, space_.model_error);
     SetPosterior(&posterior);
@@ -53,7 +86,8 @@ class SimulatedDecisions {
       if (!best.names.empty() && named.name == best.names.front())
         variant = static_cast<int>(named.best);
     const NullOfVariant& null = NullOf(variant);
-    const AdequacyStatistics left = MeasureAdequacy(space_, *null.projected, residual);
+    const AdequacyStatistics left =
+        MeasureAdequacy(*null.projected, null.projected->ProjectAll(residual));
     Outcome outcome;
     outcome.is_unknown_left =
         left.unknown_force > std::max(space_.model_error, null.unknown_force) ||
@@ -70,12 +104,14 @@ class SimulatedDecisions {
     const auto [at, is_new] = nulls_.try_emplace(variant);
     NullOfVariant& null = at->second;
     if (!is_new) return null;
-    null.projected = std::make_unique<ProjectedHypotheses>(
-        space_,
-        variant < 0 ? std::vector<int>{} : space_.hypotheses[static_cast<size_t>(variant)].columns);
+    FoundEffect own;
+    if (variant >= 0) own.columns = space_.hypotheses[static_cast<size_t>(variant)].columns;
+    null.projected = std::make_unique<ProjectedHypotheses>(space_, own.columns);
     std::vector<double> drawn[3];
-    for (const ResidualProducts& draw : draws_) {
-      const AdequacyStatistics left = MeasureAdequacy(space_, *null.projected, draw);
+    for (int k = 0; k < kDraws; ++k) {
+      own.amounts = PriorAmounts(space_, own.columns, input_.seed + 3, static_cast<uint64_t>(k));
+      const AdequacyStatistics left =
+          MeasureAdequacy(*null.projected, null.projected->ProjectAll(Draw(own, k)));
       drawn[0].push_back(left.unknown_force);
       drawn[1].push_back(left.further);
       drawn[2].push_back(left.variance / space_.variance);
@@ -91,24 +127,11 @@ class SimulatedDecisions {
   }
 
   const DecisionInput& input_;
-  const HypothesisSpace& space_;
-  ProjectedHypotheses beside_nothing_;
-  NoiseDraws noise_;
+  const HypothesisSpace space_;
+  const ProjectedHypotheses beside_nothing_;
   std::vector<ResidualProducts> draws_;
   std::map<int, NullOfVariant> nulls_;
 };
-
-// The products of the residual that an effect leaves in a model without it, and noise:
-// r = ε − C a.
-ResidualProducts WithEffect(const HypothesisSpace& space, const FoundEffect& effect,
-                            ResidualProducts noise) {
-  if (effect.columns.empty()) return noise;
-  const Eigen::MatrixXd& products = space.model.products();
-  noise.squares += effect.amounts.dot(products(effect.columns, effect.columns) * effect.amounts) -
-                   2 * effect.amounts.dot(noise.toward(effect.columns));
-  noise.toward -= products(Eigen::all, effect.columns) * effect.amounts;
-  return noise;
-}
 
 // What the decisions say of residuals in which this effect is missing.
 RecordedPower PowerOf(const DecisionInput& input, const FoundEffect& effect,
@@ -118,7 +141,7 @@ RecordedPower PowerOf(const DecisionInput& input, const FoundEffect& effect,
   if (!truth.empty()) power.truth = {truth};
   std::map<std::string, int> wrong;
   for (int k = 0; k < kDraws; ++k) {
-    const auto outcome = decisions->Decide(WithEffect(input.baseline, effect, decisions->draw(k)));
+    const auto outcome = decisions->Decide(decisions->Draw(effect, k));
     constexpr double kShare = 1.0 / kDraws;
     if (outcome.is_unknown_left)
       power.unknown += kShare;

@@ -1,4 +1,4 @@
-// How well these recordings could have told: the decision is repeated on simulated residuals.
+// What these recordings could have revealed: the decision is repeated on simulated residuals.
 //
 // For each hypothesis that is still of interest, residuals are drawn as if it were true at the size
 // that was found, with the noise of the recordings, from the products of the recordings themselves

@@ -5,53 +5,60 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/parallel.h"
-#include "diagnosis/adequacy.h"
-#include "diagnosis/projected_hypotheses.h"
 #include "diagnosis/removed_misfit.h"
+#include "diagnosis/scored_beside.h"
 #include "diagnosis/thresholds.h"
 
 namespace lacuna {
 namespace {
 
-// Of two refits of one effect that started from different variants.
-bool IsBetter(const EffectRefit& a, const EffectRefit& b, const NoiseLevel& noise) {
-  if (!a.message.empty() || !b.message.empty()) return a.message.empty();
-  return EvidenceOf(a.hypothesis, noise).log_evidence >
-         EvidenceOf(b.hypothesis, noise).log_evidence;
+// The model with which effects are refitted, and the nuisances beside it: those along the motion of
+// a refit where there are such columns.
+BaselineModel ModelOf(const RefitContext& context, const RefittedRanking& ranked,
+                      Progress* progress) {
+  BaselineModel model = context.model;
+  model.progress = progress;
+  if (!ranked.along) return model;
+  model.noise = ranked.along->noise;
+  model.model_error = ranked.along->ModelError();
+  return model;
+}
+const AdoptedNuisances& NuisancesOf(const RefitContext& context, const RefittedRanking& ranked) {
+  return ranked.along ? ranked.along->adopted : context.ranking.adopted;
 }
 
-// Whether a refit has probably ended in a local minimum.
-bool IsLikelyLocalMinimum(const EffectRanking& ranking, const EffectRefit& refit,
-                          const EffectRefit& without, const Score& score) {
-  if (!refit.message.empty() || PredictsWorse(refit.errors, without.errors)) return true;
-  // Where nothing was to be gained, nothing is missed.
-  if (score.evidence < kThresholds.refit.least_evidence) return false;
-  const double noise = ranking.noise.variance * static_cast<double>(ObservedRows(ranking.misfit));
-  return FallsShort(EvidenceOf(without.hypothesis, ranking.noise),
-                    EvidenceOf(refit.hypothesis, ranking.noise), noise, score.evidence);
+// The cost of the fitted frames above which a refit is negligible beside that of `best`.
+double HopelessCost(const RefittedRanking& ranked, const std::optional<size_t>& best) {
+  if (!best || !ranked.IsUsable(*best)) return std::numeric_limits<double>::infinity();
+  const double cost = ranked.refits[*best].calibration.cost;
+  return cost + DecisiveLead(ranked.baseline.calibration.cost - cost);
 }
 
-// The cost of the fitted frames above which a refit is negligible beside the best one so far.
-double HopelessCost(const RefittedRanking& ranked) {
-  if (!ranked.best) return std::numeric_limits<double>::infinity();
-  const double best = ranked.refits[*ranked.best].calibration.cost;
-  return best + DecisiveLead(ranked.baseline.calibration.cost - best);
-}
-
-void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranked) {
-  RankedEffect& own = ranked->effects[effect];
-  if (own.refitted || ranked->count == ranked->limit) return;
-  ++ranked->count;
-  EffectRefit& refit = ranked->refits[effect];
+// Refits an effect from the variants of `from`, and keeps the better refit where it has one
+// already. Does nothing if it has none and no further effect may be refitted.
+void RefitOne(const RefitContext& context, size_t effect, const ScoredEffect& from,
+              RefittedRanking* ranked) {
+  const RankedEffect& own = ranked->effects[effect];
+  if (!own.refitted) {
+    if (ranked->count == ranked->limit) return;
+    ++ranked->count;
+  }
   const bool is_found = ranked->best && RmsOverSigma(ranked->refits[*ranked->best].hypothesis) <=
                                             kThresholds.refit.converged_rms;
-  refit = RefitEffect(context, context.ranking.adopted, ranked->baseline, is_found, &own,
-                      HopelessCost(*ranked));
-  if (!refit.message.empty()) return;
-  own.predicts = Predicts(refit, ranked->baseline, context.ranking.noise);
+  const BaselineModel model = ModelOf(context, *ranked, context.model.progress);
+  VariantRefit fitted =
+      RefitEffect({model, context.ranking}, NuisancesOf(context, *ranked), ranked->baseline,
+                  is_found, from, HopelessCost(*ranked, ranked->best));
+  // The score stays that of all fitted frames.
+  if (&from != &own.scored) fitted.variant.score = own.scored.score;
+  if (!ranked->TakeIfBetter(effect, std::move(fitted), context.ranking.noise)) return;
+  if (!own.HasUsableRefit()) return;
+  const EffectRefit& refit = ranked->refits[effect];
+  ranked->effects[effect].predicts = Predicts(refit, ranked->baseline, context.ranking.noise);
   if (!own.predicts) return;
   const double evidence = EvidenceOf(refit, context.ranking.noise).all - ranked->baseline_evidence;
   if (evidence <= ranked->best_evidence) return;
@@ -93,7 +100,8 @@ void SetEvidence(const EffectRefit& with, const Comparison& comparison, RankedEf
   const RefitEvidence after = EvidenceOf(with, comparison.noise);
   effect->predicts = Predicts(with, comparison.without, comparison.noise);
   effect->removed.reset();
-  effect->evidence = after.all - before.all - SelectionPenalty(comparison.rivals);
+  effect->evidence = after.all - before.all - SelectionPenalty(comparison.rivals) -
+                     effect->scored.selection_penalty;
   effect->held_out_evidence = after.held_out - before.held_out;
   if (!std::isfinite(effect->evidence)) {
     effect->evidence = 0;
@@ -106,14 +114,19 @@ void SetEvidence(const EffectRefit& with, const Comparison& comparison, RankedEf
   effect->rms_over_sigma = RmsOverSigma(with.hypothesis);
 }
 
-void PutBesideAlong(const RefitContext& context, size_t effect, RefittedRanking* ranked) {
+// Fits the model with a refitted effect from where it is, beside the present columns.
+void Continue(const RefitContext& context, size_t effect, double hopeless_cost, Progress* progress,
+              RefittedRanking* ranked) {
   if (!ranked->IsUsable(effect)) return;
-  EffectRefit& refit = ranked->refits[effect];
-  refit = BesideNuisances(context.model, ranked->effects[effect].scored, ranked->along->adopted,
-                          std::move(refit));
+  const ScoredVariant& variant = ranked->effects[effect].scored;
+  ranked->Take(effect,
+               {variant, RefitFromValues(ModelOf(context, *ranked, progress), variant,
+                                         NuisancesOf(context, *ranked),
+                                         ranked->refits[effect].values_at_fit, hopeless_cost)});
 }
 
-// The hypothesis with the smallest residual: the model without an effect, a refit or a pair.
+// The hypothesis with the smallest residual: the model without an effect, or a refit or a pair that
+// the held-out frames do not refute.
 const FittedHypothesis& LeastResidual(const RefittedRanking& ranked, const NoiseLevel& noise) {
   const FittedHypothesis* best = &ranked.baseline.hypothesis;
   double least = EvidenceOf(*best, noise).misfit;
@@ -124,8 +137,10 @@ const FittedHypothesis& LeastResidual(const RefittedRanking& ranked, const Noise
     best = &hypothesis;
   };
   for (size_t k = 0; k < ranked.refits.size(); ++k)
-    if (ranked.IsUsable(k)) compare(ranked.refits[k].hypothesis);
-  for (const FittedPair& pair : ranked.pairs) compare(pair.both.hypothesis);
+    if (ranked.IsUsable(k) && Predicts(ranked.refits[k], ranked.baseline, noise))
+      compare(ranked.refits[k].hypothesis);
+  for (const FittedPair& pair : ranked.pairs)
+    if (Predicts(pair.both, ranked.baseline, noise)) compare(pair.both.hypothesis);
   return *best;
 }
 
@@ -137,44 +152,21 @@ const RankedEffect* BestRefitted(const std::vector<RankedEffect>& effects) {
   return best != effects.end() && best->evidence > 0 ? &*best : nullptr;
 }
 
-double RmsInNoise(const Eigen::VectorXd& residual, const LinearisedMisfit& misfit) {
-  const Eigen::VectorXd white = WhitenedRows(residual, misfit, 0, false);
-  const Eigen::Index observed = std::max<Eigen::Index>(1, ObservedRows(misfit));
-  return std::sqrt(white.squaredNorm() / static_cast<double>(observed));
-}
-
-bool IsFarOff(const LinearisedMisfit& misfit) {
-  return RmsInNoise(misfit.residual, misfit) > kFarFromTruth;
-}
-
-// The effects with the evidence that first order gives them beside the refitted baseline, where
-// that is less, and in that order. The first scores count from the fit as it was, which the
-// nuisances of every model may improve by more than any effect does. A fit that is far from the
-// measurements is left as it is: there, the columns of these nuisances are differences of motions
-// out of phase, which explain much and mean little. `base_has_adopted`: the baseline contains the
-// nuisances that the ranking has adopted.
-std::vector<ScoredEffect> ScoredBeside(const RefitContext& context, const EffectRefit& baseline,
-                                       std::vector<ScoredEffect> effects, bool base_has_adopted) {
-  if (IsFarOff(context.ranking.misfit)) return effects;
+// The effects as first order scores them beside the refitted baseline. The first scores count from
+// the fit as it was, which the nuisances of every model may improve by more than any effect does. A
+// fit that is far from the measurements is left as it is: there, the columns of these nuisances are
+// differences of motions out of phase, which explain much and mean little. `base_has_adopted`: the
+// baseline contains the nuisances that the ranking has adopted.
+std::vector<ScoredEffect> ScoredBesideRefit(const RefitContext& context,
+                                            const EffectRefit& baseline,
+                                            std::vector<ScoredEffect> effects,
+                                            bool base_has_adopted) {
+  const LinearisedMisfit& misfit = context.ranking.misfit;
+  if (RmsOverSigma(misfit.residual, misfit) > kFarFromTruth) return effects;
   const FittedHypothesis& at = baseline.hypothesis;
-  const HypothesisSpace space =
-      SpaceBeside(at.misfit, at.misfit.jacobian, at.priors, context.ranking, {},
-                  context.ranking.noise, base_has_adopted);
-  const ProjectedHypotheses beside(space);
-  const double penalty = SelectionPenalty(effects.size());
-  for (const NamedEvidence& named :
-       SumVariants(space, beside.LogBayesFactors(beside.Project(space.model.toward()))))
-    for (ScoredEffect& effect : effects) {
-      if (named.kind != HypothesisKind::kEffect || named.name != effect.candidate.type) continue;
-      const double less = std::max(0.0, effect.score.evidence - (named.evidence - penalty));
-      effect.score.evidence -= less;
-      for (ScoredVariant& elsewhere : effect.elsewhere) elsewhere.score.evidence -= less;
-    }
-  std::stable_sort(effects.begin(), effects.end(),
-                   [](const ScoredEffect& a, const ScoredEffect& b) {
-                     return a.score.evidence > b.score.evidence;
-                   });
-  return effects;
+  return ScoredBeside(SpaceBeside(at.misfit, at.misfit.jacobian, at.priors, context.ranking, {},
+                                  context.ranking.noise, base_has_adopted),
+                      std::move(effects));
 }
 
 }  // namespace
@@ -185,54 +177,21 @@ std::optional<size_t> RefittedRanking::FindUsable(const std::string& type) const
   return std::nullopt;
 }
 
+void RefittedRanking::Take(size_t effect, VariantRefit fitted) {
+  SetRefit(std::move(fitted.variant), fitted.refit, &effects[effect]);
+  refits[effect] = std::move(fitted.refit);
+}
+
+bool RefittedRanking::TakeIfBetter(size_t effect, VariantRefit fitted, const NoiseLevel& noise) {
+  if (IsUsable(effect) && !(EvidenceOf(fitted.variant, fitted.refit, noise) >
+                            EvidenceOf(effects[effect].scored, refits[effect], noise)))
+    return false;
+  Take(effect, std::move(fitted));
+  return true;
+}
+
 double DecisiveLead(double gain) {
   return std::max(kThresholds.refit.beaten_by, kThresholds.refit.beaten_share * gain);
-}
-
-double RmsOverSigma(const FittedHypothesis& hypothesis) {
-  return RmsInNoise(hypothesis.residual, hypothesis.misfit);
-}
-
-EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
-                        const EffectRefit& without, bool is_found, RankedEffect* effect,
-                        double hopeless_cost) {
-  const bool is_far_off = !is_found && RmsOverSigma(without.hypothesis) > kFarFromTruth;
-  const auto from = [&](const ScoredVariant& variant, RefitFrom start) {
-    return Refit(context.model, &variant, adopted, is_far_off, start, &without, hopeless_cost);
-  };
-  EffectRefit refit = from(effect->scored, RefitFrom::kFirstOrder);
-  ScoredVariant best = effect->scored;
-  int predictions = refit.calibration.predictions;
-  const auto has_budget = [&] { return predictions < kThresholds.refit.most_of_effect; };
-  for (const ScoredVariant& elsewhere : effect->scored.elsewhere) {
-    if (elsewhere.score.evidence < kThresholds.refit.variant_share * effect->scored.score.evidence)
-      break;
-    if (!has_budget()) break;
-    EffectRefit other = from(elsewhere, RefitFrom::kFirstOrder);
-    predictions += other.calibration.predictions;
-    if (!IsBetter(other, refit, context.ranking.noise)) continue;
-    refit = std::move(other);
-    best = elsewhere;
-  }
-  if (!effect->scored.candidate.IsPilot() && has_budget() &&
-      IsLikelyLocalMinimum(context.ranking, refit, without, effect->scored.score)) {
-    EffectRefit other = from(effect->scored, RefitFrom::kFixedSize);
-    if (IsBetter(other, refit, context.ranking.noise)) {
-      refit = std::move(other);
-      best = effect->scored;
-    }
-  }
-  static_cast<ScoredVariant&>(effect->scored) = std::move(best);
-  effect->refitted = true;
-  effect->refit_message = refit.message;
-  effect->errors = refit.errors;
-  if (refit.message.empty()) {
-    effect->values = refit.effect;
-    effect->model = refit.model;
-    effect->sizes = refit.sizes;
-    effect->others = refit.others;
-  }
-  return refit;
 }
 
 RefittedRanking StartRefits(const RefitContext& context, const std::vector<ScoredEffect>& effects,
@@ -242,7 +201,7 @@ RefittedRanking StartRefits(const RefitContext& context, const std::vector<Score
   CHECK(ranked.baseline.message.empty()) << ranked.baseline.message;
   ranked.baseline_evidence = EvidenceOf(ranked.baseline, context.ranking.noise).all;
   for (ScoredEffect& effect :
-       ScoredBeside(context, ranked.baseline, effects, /*base_has_adopted=*/true))
+       ScoredBesideRefit(context, ranked.baseline, effects, /*base_has_adopted=*/true))
     ranked.effects.emplace_back().scored = std::move(effect);
   ranked.refits.resize(effects.size());
   ranked.limit = std::max(kThresholds.refit.most_effects, wanted);
@@ -279,26 +238,18 @@ std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects) {
 
 void RefitAll(const RefitContext& context, const std::vector<size_t>& effects,
               RefittedRanking* ranked) {
-  for (const size_t effect : effects) {
-    if (IsBeaten(*ranked, effect)) continue;
-    const int before = ranked->count;
-    RefitOne(context, effect, ranked);
-    if (ranked->along && ranked->count > before) PutBesideAlong(context, effect, ranked);
-  }
+  for (const size_t effect : effects)
+    if (!ranked->effects[effect].refitted && !IsBeaten(*ranked, effect))
+      RefitOne(context, effect, ranked->effects[effect].scored, ranked);
 }
 
 void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEffect>& early,
                         int wanted, RefittedRanking* ranked) {
   for (size_t k = 0; k < early.size() && static_cast<int>(k) < wanted; ++k) {
     if (early[k].score.evidence < kThresholds.refit.least_evidence) break;
-    for (size_t at = 0; at < ranked->effects.size(); ++at) {
-      RankedEffect& effect = ranked->effects[at];
-      if (effect.scored.candidate.type != early[k].candidate.type || effect.refitted) continue;
-      // The score stays that of all fitted frames.
-      const Score score = std::exchange(effect.scored, early[k]).score;
-      RefitOne(context, at, ranked);
-      effect.scored.score = score;
-    }
+    for (size_t at = 0; at < ranked->effects.size(); ++at)
+      if (ranked->effects[at].scored.candidate.type == early[k].candidate.type)
+        RefitOne(context, at, early[k], ranked);
   }
 }
 
@@ -312,9 +263,33 @@ void LookAlong(const RefitContext& context, const std::string& type, EffectRanki
   for (const TriedVariant& tried : context.ranking.tried)
     if (tried.type == type) along.tried.push_back(tried);
   ranked->along_for_others = std::make_shared<const EffectRanking>(std::move(along));
-  ParallelFor(static_cast<int64_t>(ranked->refits.size()), 1, [&](int64_t effect) {
-    PutBesideAlong(context, static_cast<size_t>(effect), ranked);
+  const std::optional<size_t> first = ranked->FindUsable(type);
+  std::vector<size_t> others;
+  for (size_t effect = 0; effect < ranked->effects.size(); ++effect)
+    if (effect != first && ranked->IsUsable(effect)) others.push_back(effect);
+  // The refit along whose motion the columns were computed tells which others are hopeless.
+  if (first)
+    Continue(context, *first, std::numeric_limits<double>::infinity(), context.model.progress,
+             ranked);
+  const double hopeless_cost = HopelessCost(*ranked, first);
+  Progress& progress = *context.model.progress;
+  progress.Begin("refit along the motion with " + type, static_cast<int64_t>(others.size()));
+  std::atomic<int64_t> done = 0;
+  ParallelFor(static_cast<int64_t>(others.size()), 1, [&](int64_t k) {
+    Progress silent({.style = ProgressStyle::kSilent});
+    Continue(context, others[static_cast<size_t>(k)], hopeless_cost, &silent, ranked);
+    progress.Report(++done);
   });
+  progress.End();
+}
+
+void RefitAgain(const RefitContext& context, size_t effect, const Eigen::VectorXd& values,
+                const NoiseLevel& noise, RefittedRanking* ranked) {
+  const ScoredVariant variant = ranked->effects[effect].scored;
+  ranked->TakeIfBetter(effect,
+                       {variant, RefitFromValues(ModelOf(context, *ranked, context.model.progress),
+                                                 variant, NuisancesOf(context, *ranked), values)},
+                       noise);
 }
 
 RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {
@@ -396,12 +371,13 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
           nuisance.candidate.selection_penalty + SelectionPenalty(ranking.nuisances.size());
   const double least = kThresholds.refit.alternative_share * alternatives.nuisances_evidence;
   for (const ScoredEffect& scored :
-       ScoredBeside(context, bare, ranking.without_adopted, /*base_has_adopted=*/false)) {
+       ScoredBesideRefit(context, bare, ranking.without_adopted, /*base_has_adopted=*/false)) {
     if (static_cast<int>(alternatives.effects.size()) == wanted || scored.score.evidence < least)
       break;
     RankedEffect& effect = alternatives.effects.emplace_back();
     effect.scored = scored;
-    const EffectRefit with = RefitEffect(context, always, bare, /*is_found=*/false, &effect);
+    const auto [variant, with] = RefitEffect(context, always, bare, /*is_found=*/false, scored);
+    SetRefit(variant, with, &effect);
     HypothesisSpace& space = alternatives.spaces.emplace_back();
     if (!with.message.empty()) continue;
     SetEvidence(with, comparison, &effect);

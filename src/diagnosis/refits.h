@@ -2,14 +2,13 @@
 // what evidence they have afterwards.
 //
 // All state is in plain values. RefitAll() and RefitAsRankedEarly() add refits to a
-// RefittedRanking; LookAlong() gives them the columns of another motion; WeighRefits() computes the
-// evidence of all refits that it has, with a noise that is estimated from the best one. "The best
-// effect" is the one with the most of that evidence; functions that start from it do nothing if no
-// effect has any.
+// RefittedRanking; LookAlong() fits them anew beside the columns of another motion, and
+// RefitAgain() from other values; WeighRefits() computes the evidence of all refits that it has,
+// with a noise that is estimated from the best one. "The best effect" is the one with the most of
+// that evidence; functions that start from it do nothing if no effect has any.
 #ifndef LACUNA_DIAGNOSIS_REFITS_H_
 #define LACUNA_DIAGNOSIS_REFITS_H_
 
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -18,22 +17,18 @@
 
 #include "diagnosis/diagnosis_result.h"
 #include "diagnosis/effect_refit.h"
+#include "diagnosis/variant_refit.h"
 
 namespace lacuna {
 
-// What all refits of a diagnosis share. References must outlive it.
-struct RefitContext {
-  const BaselineModel& model;
-  const EffectRanking& ranking;  // of `model`; its list of effects is not used
-};
-
-// The model fitted with two effects, beside the columns of RefittedRanking::along.
+// The model fitted with two effects, beside the columns of RefittedRanking::along. It is compared
+// with the refit of the first one alone, which stands beside the same columns.
 struct FittedPair {
   std::string first;
   RankedEffect second;  // as it was refitted beside the first; its evidence is not set
   EffectRefit both;
   std::vector<ParameterEstimate> sizes_of_first;  // in `both`
-  EffectRefit alone;  // the first effect alone, fitted again from its refit
+  Eigen::VectorXd values_of_first;  // in `both`, of the parameters of the model with it alone
 
   bool IsOf(const std::string& a, const std::string& b) const {
     const std::string& other = second.scored.candidate.type;
@@ -65,6 +60,11 @@ struct RefittedRanking {
   bool IsUsable(size_t effect) const { return effects[effect].HasUsableRefit(); }
   // The index of the effect of this type; nothing if it has no usable refit.
   std::optional<size_t> FindUsable(const std::string& type) const;
+  // Makes this the refit of the effect (SetRefit).
+  void Take(size_t effect, VariantRefit fitted);
+  // The same where the effect has no usable refit, or one with less evidence. Returns whether it
+  // has taken it.
+  bool TakeIfBetter(size_t effect, VariantRefit fitted, const NoiseLevel& noise);
 };
 
 // The noise of the measurements, and the rms of the hypothesis with the smallest residual.
@@ -75,19 +75,6 @@ struct RefitNoise {
 
 // By how much an effect must be behind the best refit to be negligible, if that gains so much.
 double DecisiveLead(double gain);
-
-// The rms residual over all frames, adopted nuisances at their best, over σ.
-double RmsOverSigma(const FittedHypothesis& hypothesis);
-
-// Refits one effect from its best variants, and from a fixed size where that seems to end in a
-// local minimum. Writes the result into the effect, but not its evidence. `without`: the refit with
-// the same nuisances alone. `is_found`: another refit has come down to the noise, which shows that
-// first order leads to the right minimum; a model that is far off is then not fitted afresh with
-// this effect. `hopeless_cost`: as in CalibrationOptions. Throws Interrupted, as do the other
-// functions that fit.
-EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
-                        const EffectRefit& without, bool is_found, RankedEffect* effect,
-                        double hopeless_cost = std::numeric_limits<double>::infinity());
 
 // Fits the model without an effect. No effect is refitted yet; `wanted` is the number of refits
 // that the user asks for.
@@ -110,17 +97,24 @@ void RefitAll(const RefitContext& context, const std::vector<size_t>& effects,
               RefittedRanking* ranked);
 
 // Refits the `wanted` best effects of another ranking, `early`, from the places, directions, times
-// and sizes that they have there.
+// and sizes that they have there, also those that have been refitted: the better refit counts.
 void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEffect>& early,
                         int wanted, RefittedRanking* ranked);
 
 // Puts the columns of `along`, a ranking along the motion of the refit with the effect `type`,
-// beside all refits, and settles them (BesideNuisances). Every refit that follows the measurements
-// moves like that one, while the baseline, without the effect, may move otherwise: its columns of
-// the mesh and the time step are then wrong for all of them, and what is wrong looks like a further
-// effect. Pairs that were fitted beside other columns are dropped. Throws Interrupted.
+// beside all refits, and fits each of them anew beside these columns, from where it is. Every refit
+// that follows the measurements moves like that one, while the baseline, without the effect, may
+// move otherwise: its columns of the mesh and the time step are then wrong for all of them, and
+// what is wrong looks like a further effect. Pairs that were fitted beside other columns are
+// dropped. Throws Interrupted.
 void LookAlong(const RefitContext& context, const std::string& type, EffectRanking along,
                RefittedRanking* ranked);
+
+// Fits the model with an effect, which has a usable refit, from these values of its parameters,
+// beside the columns of RefittedRanking::along, and keeps the better of both fits. Throws
+// Interrupted.
+void RefitAgain(const RefitContext& context, size_t effect, const Eigen::VectorXd& values,
+                const NoiseLevel& noise, RefittedRanking* ranked);
 
 // Estimates the noise from the refit or pair with the smallest residual, and computes the evidence
 // of all refits. Replaces the results of an earlier call.

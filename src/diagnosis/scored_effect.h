@@ -1,7 +1,7 @@
 // Effects and nuisances with the evidence that they have to first order, as plain values.
 //
-// Evidence is the log Bayes factor against the model without the hypothesis. Columns
-// have the rows of a LinearisedMisfit, in m per unit of the amount that they belong to.
+// Evidence is that of record/diagnosis_record.h. Columns have the rows of a LinearisedMisfit, in m
+// per unit of the amount that they belong to.
 #ifndef LACUNA_DIAGNOSIS_SCORED_EFFECT_H_
 #define LACUNA_DIAGNOSIS_SCORED_EFFECT_H_
 
@@ -22,6 +22,10 @@ struct ScoredVariant {
   CandidateEffect candidate;
   Score score;
   Eigen::VectorXd expected_values;  // of the problem's parameters, with the effect in the model
+  // −ln of ReachableShare() (candidates.h): what the choice of this variant among those of its
+  // effect costs the evidence of a refit. A refit pays for the parameters that it moves through
+  // their priors.
+  double selection_penalty = 0;
 };
 
 // An effect in the variant with the most evidence.
@@ -52,8 +56,7 @@ struct AdoptedNuisances {
   std::vector<LinearPrior> priors;
   Eigen::Index always = 0;  // the first columns belong to nuisances that every model has
 
-  AdoptedNuisances Always() const;        // only those
-  AdoptedNuisances BeyondAlways() const;  // only the others
+  AdoptedNuisances Always() const;  // only those
   AdoptedNuisances And(const NuisanceCandidate& nuisance) const;
   bool HasMore() const { return columns.cols() > always; }
 };

@@ -1,9 +1,9 @@
 // All numeric thresholds of the diagnosis, in one place.
 //
-// Evidence is the log Bayes factor against the model without the hypothesis; 3 stands for a factor
-// of 20, 5 for 150. A rms "over σ" is a rms residual divided by the standard
-// deviation of the noise, so that 1 is noise alone. Each threshold says what a higher and a lower
-// value trade. Tolerances of a solver stay beside the solver.
+// Evidence is that of record/diagnosis_record.h; 3 stands for a factor of 20, 5 for 150. A rms
+// "over σ" is a rms residual divided by the standard deviation of the noise, so that 1 is noise
+// alone. Each threshold says what a higher and a lower value trade. Tolerances of a solver stay
+// beside the solver.
 #ifndef LACUNA_DIAGNOSIS_THRESHOLDS_H_
 #define LACUNA_DIAGNOSIS_THRESHOLDS_H_
 
@@ -47,9 +47,9 @@ struct RefitThresholds {
   double beaten_by = 15, beaten_share = 0.3;
   // The largest number of refitted effects, unless the user asks for more.
   int most_effects = 6;
-  // A fit of a refit ends after so many predictions, and no further start is tried once an effect
-  // has taken `most_of_effect`. The best parameters so far count. Higher: a hopeless effect takes
-  // longer, and a slow minimum is found more often.
+  // A fit of a refit ends after so many predictions. Once an effect has taken `most_of_effect`, no
+  // further start is tried, and a fit that has not converged does not go on; the best parameters so
+  // far count. Higher: a hopeless effect takes longer, and a slow minimum is found more often.
   int most_predictions = 60, most_of_effect = 120;
   // A refit also starts from other variants (places, times) with this share of the evidence of the
   // best variant. Lower: slower, fewer local minima.

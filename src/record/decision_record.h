@@ -1,5 +1,5 @@
-// What a diagnosis believes, and how well the recordings could have told: the part of
-// diagnosis/diagnosis.json from which the verdict follows.
+// The posterior of a diagnosis, and how well the recordings could have distinguished its
+// hypotheses: the part of diagnosis/diagnosis.json from which the verdict follows.
 #ifndef LACUNA_RECORD_DECISION_RECORD_H_
 #define LACUNA_RECORD_DECISION_RECORD_H_
 
@@ -21,12 +21,15 @@ inline constexpr double kStatedProbability = 0.95;
 struct HypothesisProbability {
   enum class Kind { kNothing, kEffect, kNuisance, kPair };
   Kind kind = Kind::kNothing;
-  std::vector<std::string> names;              // none for "nothing", two for a pair of effects
+  // None for "nothing", two effects for a pair. Nuisances beside an effect stand behind it.
+  std::vector<std::string> names;
   EffectFamily family = EffectFamily::kOther;  // of an effect
-  // The log Bayes factor against the model as it is, variants summed, without prior odds.
+  // Evidence as in record/diagnosis_record.h, variants summed; of effects, less the evidence that
+  // the unknown error of the model could give to one.
   double evidence = 0;
   double probability = 0;
-  // An effect with which the error of the held-out frames grows by more than chance. It counts as
+  // An effect that predicts the held-out frames more than 100 times less probably than the model
+  // without it, or a pair that does so beside the model with one of its effects. It counts as
   // refuted, whatever its evidence: its probability is 0.
   bool is_refuted = false;
 
@@ -43,7 +46,7 @@ struct RecordedAdequacy {
   double p = 1;             // of the smallest of the three
   bool is_adequate = true;  // p is not below the level of the test, or what is left not probable
   std::string further;      // the best further effect or nuisance beside it
-  double further_evidence = 0;  // its log Bayes factor, with the prior among its rivals
+  double further_evidence = 0;  // its evidence
   double rms_over_sigma = 0;    // of the whitened residual of all frames
   // What could still be removed from the misfit, as a share of what the hypothesis and the effects
   // that were added before have removed; infinite where there is neither.

@@ -82,6 +82,7 @@ json RefitToJson(const RecordedRefit& refit) {
                 {"explained_share", refit.explained},
                 {"rms_over_sigma", refit.rms_over_sigma},
                 {"others", others}};
+  if (!refit.unconverged.empty()) value["unconverged"] = refit.unconverged;
   if (refit.removed) value["removed_misfit"] = ByDataKindToJson(*refit.removed);
   value.update(ErrorsToJson(refit.errors));
   return value;
@@ -90,6 +91,7 @@ json RefitToJson(const RecordedRefit& refit) {
 RecordedRefit RefitFromJson(const json& value, bool has_held_out) {
   RecordedRefit refit;
   refit.message = value.at("message");
+  refit.unconverged = value.value("unconverged", "");
   refit.evidence = value.at("evidence");
   refit.held_out_evidence = value.at("held_out_evidence");
   refit.explained = value.at("explained_share");

@@ -1,8 +1,10 @@
 // The result of a diagnosis as plain data: diagnosis/diagnosis.json in the run's folder.
 //
 // It holds everything that the report needs, so that a diagnosis can be explained without its model
-// and its recordings. Evidence is the log Bayes factor against the unchanged model,
-// reduced by a penalty for having tried many hypotheses. σ is the standard deviation of the noise.
+// and its recordings. Evidence is the log Bayes factor against the unchanged model, less ln n for
+// the n effects (or nuisances) that were tried, each of which has an equal share of the prior. The
+// nuisances of every model are not selected, so that nothing is subtracted from theirs. σ is the
+// standard deviation of the noise.
 #ifndef LACUNA_RECORD_DIAGNOSIS_RECORD_H_
 #define LACUNA_RECORD_DIAGNOSIS_RECORD_H_
 
@@ -43,7 +45,7 @@ struct RecordedValue {
 
 // The first-order prediction for an effect.
 struct RecordedScore {
-  double evidence = 0;
+  double evidence = 0;   // of the best variant, less ln of the number of variants, too
   double explained = 0;  // share of the squared misfit
   // Share of the effect's influence that the fitted parameters can compensate for; 1: undetectable.
   double absorbed = 1;
@@ -52,8 +54,9 @@ struct RecordedScore {
 
 // The model fitted again with an effect.
 struct RecordedRefit {
-  std::string message;  // the reason why it is not usable; empty where it is
-  double evidence = 0;
+  std::string message;      // the reason why it is not usable; empty where it is
+  std::string unconverged;  // the reason why the fit ended too early; empty where it has converged
+  double evidence = 0;      // less ln of the number of variants that it cannot reach, too
   double held_out_evidence = 0;  // contribution of the held-out frames
   double explained = 0;          // share of the squared misfit
   double rms_over_sigma = 0;     // all frames, with the adopted nuisances at their best
@@ -108,7 +111,7 @@ struct DiagnosisRecord : Conclusion {
   DecisionRecord decision;    // what the verdict follows from
   AgreementRecord agreement;  // of the recordings about the parameters of the fitted model
   // Over all frames, with the adopted nuisances at their best: of the model as it is, and of the
-  // best hypothesis.
+  // best-fitting model, i.e. the one with the smallest residual of it and of all refits.
   double baseline_rms_over_sigma = 0, best_rms_over_sigma = 0;
   ModelErrors errors;  // errors of the unchanged model
   std::vector<RecordedNuisance> nuisances;

@@ -37,9 +37,10 @@ struct ModelErrors {
   double unfitted_squares = 0;
 };
 
-// An effect that a diagnosis could not test with these recordings.
+// An effect, or a nuisance, that a diagnosis could not try with these recordings or with one of
+// them.
 struct UntriedEffect {
-  std::string type;
+  std::string type;  // or the name of the nuisance
   std::string why;
 };
 

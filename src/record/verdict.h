@@ -1,9 +1,9 @@
 // The verdict of a diagnosis and the reasons for it, as plain data.
 //
 // A reason holds the data for its sentence, which report/verdict_text.h writes.
-// Evidence is the log Bayes factor against the model without the effect. Errors with
-// "over_sigma" in their name are rms residuals divided by the standard deviation of the noise; 1 is
-// noise alone. A `nuisance` is an index in the list of nuisances of the same diagnosis.
+// Evidence is that of record/diagnosis_record.h. Errors with "over_sigma" in their name are rms
+// residuals divided by the standard deviation of the noise; 1 is noise alone. A `nuisance` is an
+// index in the list of nuisances of the same diagnosis.
 #ifndef LACUNA_RECORD_VERDICT_H_
 #define LACUNA_RECORD_VERDICT_H_
 

@@ -120,6 +120,7 @@ std::string EffectLines(const RecordedEffect& effect) {
     if (std::string removed = RemovedMisfitText(*effect.refit->removed); !removed.empty())
       more.push_back(std::move(removed));
   if (effect.refit && !usable) more.push_back(effect.refit->message);
+  if (usable && !effect.refit->unconverged.empty()) more.push_back(effect.refit->unconverged);
   if (!more.empty()) text += Wrapped(fmt::format("{}", fmt::join(more, "; ")), "      ", "      ");
   return text;
 }
@@ -194,11 +195,12 @@ std::string NoiseParagraph(const DiagnosisRecord& diagnosis) {
       "Noise: σ = {}, {}.", fmt::join(sigma, " and "),
       noise.correlation_time > 0 ? fmt::format("correlated over {:.3g} s", noise.correlation_time)
                                  : "white in time");
-  text += fmt::format(" The residual of the best hypothesis is {:.1f} σ. Time step: {:.3g} ms.",
+  text += fmt::format(" The residual of the best-fitting model is {:.1f} σ. Time step: {:.3g} ms.",
                       diagnosis.best_rms_over_sigma, 1e3 * diagnosis.time_step);
   if (std::isfinite(diagnosis.decision.chance))
     text += fmt::format(
-        " Without any effect, chance gives the best one a log Bayes factor above {:.1f} in one of "
+        " If nothing is missing, the evidence for the best effect exceeds {:.1f} by chance in one "
+        "of "
         "20 such recordings.",
         diagnosis.decision.chance);
   return Paragraph(text);

@@ -93,14 +93,24 @@ const HypothesisProbability* FindHypothesis(const DecisionRecord& decision,
   return nullptr;
 }
 
-// Its probability; NaN where the record has none.
-double ProbabilityOf(const DecisionRecord& decision, const std::vector<std::string>& names) {
-  const HypothesisProbability* found = FindHypothesis(decision, names);
-  return found == nullptr ? kNotMeasured : found->probability;
+// The sum over the hypotheses that fulfil a condition; NaN where the record has none.
+template <class Condition>
+double ProbabilityWhere(const DecisionRecord& decision, const Condition& condition) {
+  double sum = kNotMeasured;
+  for (const HypothesisProbability& one : decision.probabilities)
+    if (condition(one)) sum = (std::isnan(sum) ? 0 : sum) + one.probability;
+  return sum;
 }
 
+// With the probability that this effect or nuisance is the cause, whatever nuisances stand beside
+// it, but no further effect.
 std::string WithProbability(const DiagnosisRecord& diagnosis, const std::string& name) {
-  const double probability = ProbabilityOf(diagnosis.decision, {name});
+  using Kind = HypothesisProbability::Kind;
+  const double probability =
+      ProbabilityWhere(diagnosis.decision, [&](const HypothesisProbability& one) {
+        return (one.kind == Kind::kEffect || one.kind == Kind::kNuisance) &&
+               one.names.front() == name;
+      });
   return ShortTitle(diagnosis, name) +
          (std::isnan(probability) ? "" : fmt::format(" ({})", PercentText(probability)));
 }
@@ -113,7 +123,13 @@ std::string MissingSentence(const ReportedModel& model) {
     if (found->kind == HypothesisProbability::Kind::kEffect &&
         found->family != EffectFamily::kOther)
       details.push_back(FamilyTitle(found->family));
-    details.push_back("probability " + PercentText(found->probability));
+    // Whatever else may be missing, too.
+    details.push_back(
+        "probability " +
+        PercentText(ProbabilityWhere(diagnosis.decision, [&](const HypothesisProbability& one) {
+          return std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(),
+                             [&](const auto& name) { return one.Contains(name); });
+        })));
   }
   return fmt::format("What it {}lacks: {}{}.", model.added.empty() ? "" : "still ",
                      fmt::join(titles, " and "),
@@ -149,11 +165,9 @@ std::string NuisanceSentence(const ReportedModel& model) {
 // The probability of all hypotheses without an effect; NaN where the record has none.
 double ProbabilityOfNoEffect(const DecisionRecord& decision) {
   using Kind = HypothesisProbability::Kind;
-  double sum = kNotMeasured;
-  for (const HypothesisProbability& one : decision.probabilities)
-    if (one.kind == Kind::kNothing || one.kind == Kind::kNuisance)
-      sum = (std::isnan(sum) ? 0 : sum) + one.probability;
-  return sum;
+  return ProbabilityWhere(decision, [](const HypothesisProbability& one) {
+    return one.kind == Kind::kNothing || one.kind == Kind::kNuisance;
+  });
 }
 
 std::string AdequateSentence(const DiagnosisRecord& diagnosis) {

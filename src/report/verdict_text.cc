@@ -76,14 +76,14 @@ struct ReasonSentence {
   }
   std::string operator()(const EvidenceForAnother& reason) const {
     return fmt::format(
-        "{} explains most, with a log Bayes factor of {:.0f}, but beside it that of {} is {:.0f}: "
+        "{} explains most, with evidence of {:.0f}, but beside it the evidence for {} is {:.0f}: "
         "either both are missing, or one effect that is not in the catalogue and that each of them "
         "explains in part.",
         TitleOf(diagnosis, reason.effect), reason.evidence, reason.other, reason.other_evidence);
   }
   std::string operator()(const EffectReducesError& reason) const {
     return fmt::format(
-        "With {}, the {} error{} goes from {:.1f} σ to {:.1f} σ; its log Bayes factor is {:.0f}.",
+        "With {}, the {} error{} goes from {:.1f} σ to {:.1f} σ; the evidence for it is {:.0f}.",
         reason.effect, JudgedFrames(reason.held_out),
         reason.adjusted_for_nuisances
             ? ", excluding the contributions of mesh, time step and the other adopted nuisances,"
@@ -153,11 +153,13 @@ bool HasEvidence(const DiagnosisRecord& diagnosis, const std::string& type) {
   return effect != nullptr && effect->HasUsableRefit() && effect->refit->evidence > 0;
 }
 
-// The effects that have evidence, but increase the error of the held-out frames.
+// The effects that have evidence, but predict the held-out frames much less probably than the model
+// without them.
 std::vector<std::string> RefutedSentences(const DiagnosisRecord& diagnosis) {
   std::vector<std::string> sentences;
   for (const HypothesisProbability& one : diagnosis.decision.probabilities)
-    if (one.is_refuted && HasEvidence(diagnosis, one.names.front()))
+    if (one.kind == HypothesisProbability::Kind::kEffect && one.is_refuted &&
+        HasEvidence(diagnosis, one.names.front()))
       sentences.push_back(
           fmt::format("With {} the model fits better, but it predicts the held-out frames worse, "
                       "and by more than chance: {} is refuted.",

@@ -7,12 +7,14 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "calibration/adaptive_time_step.h"
 #include "core/atomic_file.h"
 #include "core/claim.h"
 #include "core/error.h"
+#include "core/json_number.h"
 #include "core/workers.h"
 #include "diagnosis/decision.h"
 #include "diagnosis/decision_store.h"
@@ -26,7 +28,7 @@
 namespace lacuna {
 namespace {
 
-constexpr int kSchemaVersion = 3;  // of outcome.json
+constexpr int kSchemaVersion = 4;  // of outcome.json
 
 const RankedEffect* Find(const Diagnosis& diagnosis, const std::string& type) {
   for (const RankedEffect& effect : diagnosis.ranking)
@@ -94,6 +96,15 @@ std::optional<RecordedPower> Simulated(const TrialCase& trial, const DecisionInp
   return PowerToFind(LoadDecisionInput(WithRemoved(output)), truth, false).value_or(invisible);
 }
 
+void SetDecided(const DecisionRecord& decision, const DecisionInput& input, TrialOutcome* outcome) {
+  outcome->probabilities = decision.probabilities;
+  outcome->p_adequate = decision.adequacy.p;
+  outcome->p_unknown_force = decision.adequacy.p_unknown_force;
+  outcome->p_further = decision.adequacy.p_further;
+  outcome->left_share = decision.adequacy.left_share;
+  outcome->model_error = input.baseline.model_error;
+}
+
 // The same study with the time step that the diagnosis has chosen.
 DecisionInput InputWithRemoved(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                                double time_step) {
@@ -134,8 +145,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem:
   outcome.verdict = diagnosis.verdict;
   outcome.named = diagnosis.effects;
   outcome.chance = diagnosis.decision.chance;
-  outcome.probabilities = diagnosis.decision.probabilities;
-  outcome.p_adequate = diagnosis.decision.adequacy.p;
+  SetDecided(diagnosis.decision, diagnosis.decision_input, &outcome);
   outcome.left = diagnosis.best_rms_over_sigma;
   std::vector<std::pair<double, std::string>> order;
   for (const RankedEffect& effect : diagnosis.ranking) {
@@ -172,6 +182,10 @@ void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file)
       {"verdict", VerdictName(outcome.verdict)},
       {"probabilities", ProbabilitiesToJson(outcome.probabilities)},
       {"p_adequate", outcome.p_adequate},
+      {"p_unknown_force", outcome.p_unknown_force},
+      {"p_further", outcome.p_further},
+      {"left_share", NumberOrNull(outcome.left_share)},
+      {"model_error", NumberOrNull(outcome.model_error)},
       {"simulated", outcome.simulated ? PowerToJson(*outcome.simulated) : nlohmann::json()},
       {"named", outcome.named},
       {"ranked", outcome.ranked},
@@ -205,6 +219,12 @@ TrialOutcome LoadOutcome(const std::filesystem::path& file) {
       outcome.probabilities = ProbabilitiesFromJson(json.at("probabilities"));
       outcome.p_adequate = json.at("p_adequate");
     }
+    if (version >= 4) {
+      outcome.p_unknown_force = json.at("p_unknown_force");
+      outcome.p_further = json.at("p_further");
+      outcome.left_share = NumberOr(json.at("left_share"), std::numeric_limits<double>::infinity());
+      outcome.model_error = NumberOr(json.at("model_error"));
+    }
     if (version >= 3 && !json.at("simulated").is_null())
       outcome.simulated = PowerFromJson(json.at("simulated"));
     outcome.ranked = json.at("ranked");
@@ -234,8 +254,7 @@ bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output
   TrialOutcome outcome = LoadOutcome(output / "outcome.json");
   outcome.verdict = decision.verdict;
   outcome.named = decision.names;
-  outcome.probabilities = decision.record.probabilities;
-  outcome.p_adequate = decision.record.adequacy.p;
+  SetDecided(decision.record, input, &outcome);
   outcome.simulated = Simulated(trial, input, output);
   SaveOutcome(outcome, output / "outcome.json");
   return true;

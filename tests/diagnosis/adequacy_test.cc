@@ -2,12 +2,70 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "diagnosis/synthetic_space.h"
 
 namespace lacuna {
 namespace {
+
+// A SyntheticSpace whose base has forty nuisances as well, which have finite priors and resemble
+// the unknown force.
+struct SpaceWithNuisances {
+  static constexpr int kNuisances = 40;
+  static constexpr double kDeviation = 2;  // of their amounts
+
+  SpaceWithNuisances() {
+    constexpr Eigen::Index kRows = SyntheticSpace::kRows;
+    nuisances.resize(kRows, kNuisances);
+    for (int k = 0; k < kNuisances; ++k)
+      for (Eigen::Index row = 0; row < kRows; ++row)
+        nuisances(row, k) =
+            synthetic.unknown(row, k % synthetic.unknown.cols()) +
+            Normal(RandomBits({8, static_cast<uint64_t>(k), static_cast<uint64_t>(row)})) /
+                std::sqrt(static_cast<double>(kRows));
+    columns.resize(kRows, synthetic.columns.cols() + kNuisances);
+    columns << synthetic.columns.leftCols(SyntheticSpace::kBase), nuisances,
+        synthetic.columns.rightCols(synthetic.columns.cols() - SyntheticSpace::kBase);
+    priors.insert(priors.begin() + SyntheticSpace::kBase, kNuisances, {0, kDeviation, false});
+    for (WeighedHypothesis& hypothesis : hypotheses)
+      for (int& column : hypothesis.columns) column += kNuisances;
+  }
+
+  HypothesisSpace With(const Eigen::VectorXd& residual) const {
+    return MakeHypothesisSpace(residual, columns, priors, kBase, hypotheses, 1,
+                               SyntheticSpace::kRows);
+  }
+
+  // Noise, and the nuisances with amounts from their priors.
+  Eigen::VectorXd Residual(uint64_t seed) const {
+    Eigen::VectorXd amounts(kNuisances);
+    for (int k = 0; k < kNuisances; ++k)
+      amounts[k] = kDeviation * Normal(RandomBits({seed, 50, static_cast<uint64_t>(k)}));
+    return SyntheticSpace::Noise(1000 + seed) - nuisances * amounts;
+  }
+
+  static constexpr int kBase = SyntheticSpace::kBase + kNuisances;
+  SyntheticSpace synthetic;
+  Eigen::MatrixXd nuisances, columns;
+  std::vector<LinearPrior> priors = synthetic.priors;
+  std::vector<WeighedHypothesis> hypotheses = synthetic.hypotheses;
+};
+
+// The largest distance of the distribution of the values from the uniform one (Kolmogorov and
+// Smirnov).
+double DistanceFromUniform(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const double count = static_cast<double>(values.size());
+  double distance = 0;
+  for (size_t k = 0; k < values.size(); ++k)
+    distance = std::max({distance, values[k] - static_cast<double>(k) / count,
+                         static_cast<double>(k + 1) / count - values[k]});
+  return distance;
+}
 
 TEST(ProjectedHypotheses, GivesTheBayesFactorsOfTheLinearModels) {
   SyntheticSpace synthetic;
@@ -31,6 +89,42 @@ TEST(ProjectedHypotheses, GivesTheBayesFactorsOfTheLinearModels) {
   EXPECT_NEAR(projected.Misfit({space.model.squares(), space.model.toward()}),
               model.Fit(space.base, 1).misfit, 1e-8 * residual.squaredNorm());
   EXPECT_NEAR(projected.AmountsOf(0, projected.Project(space.model.toward())).value[0], 9, 3);
+}
+
+// By the covariance matrix of the residual, C = v I + B P Bᵀ.
+TEST(ProjectedHypotheses, IntegratesOutTheTakenColumns) {
+  const SpaceWithNuisances nuisances;
+  HypothesisSpace space = nuisances.With(nuisances.Residual(3));
+  space.variance = 1.7;
+  const std::vector<int>& gravity = space.hypotheses[2].columns;
+  const ProjectedHypotheses projected(space, gravity);
+  const HypothesisSpace marginal = projected.Marginal();
+  EXPECT_TRUE(marginal.base.empty());
+  EXPECT_EQ(marginal.rows, SyntheticSpace::kRows - 2);
+  Eigen::MatrixXd covariance =
+      1.7 * Eigen::MatrixXd::Identity(SyntheticSpace::kRows, SyntheticSpace::kRows);
+  // In place of no prior a very wide one, which leaves an error of about 1e-8.
+  constexpr double kWide = 1e4;
+  std::vector<int> taken = space.base;
+  taken.insert(taken.end(), gravity.begin(), gravity.end());
+  for (const int column : taken) {
+    const double deviation = std::min(kWide, space.model.Prior(column).deviation);
+    covariance += std::pow(deviation, 2) * nuisances.columns.col(column) *
+                  nuisances.columns.col(column).transpose();
+  }
+  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
+  const Eigen::VectorXd residual = nuisances.Residual(3);
+  const Eigen::VectorXd weighed = 1.7 * factor.solve(residual);
+  EXPECT_NEAR(marginal.model.squares(), residual.dot(weighed), 1e-4);
+  const std::vector<int>& force = space.hypotheses.back().columns;
+  const Eigen::MatrixXd seen = nuisances.columns(Eigen::all, force);
+  EXPECT_TRUE(marginal.model.toward()(force).isApprox(seen.transpose() * weighed, 1e-5));
+  EXPECT_TRUE(marginal.model.products()(force, force)
+                  .isApprox(1.7 * seen.transpose() * factor.solve(seen), 1e-5));
+  for (const int column : taken) {
+    EXPECT_EQ(marginal.model.toward()[column], 0);
+    EXPECT_EQ(marginal.model.Square(column), 0);
+  }
 }
 
 // The Bayes factor of an unknown force is the mean over its prior widths.
@@ -126,6 +220,85 @@ TEST(Adequacy, RejectsNoiseAsOftenAsItsLevelSays) {
   // 20 are expected, with a standard deviation of 4.2.
   EXPECT_GT(below, 8);
   EXPECT_LT(below, 33);
+}
+
+// So it is if every model has nuisances whose amounts are known from their priors only: they
+// contribute to the residual as noise does, and are no sign of something unknown.
+TEST(Adequacy, ExpectsTheAmountsOfNuisancesThatTheirPriorsAllow) {
+  const SpaceWithNuisances nuisances;
+  constexpr int kRecordings = 150;
+  std::vector<double> p, p_unknown_force, p_variance;
+  for (uint64_t k = 0; k < kRecordings; ++k) {
+    const AdequacyTest test = TestAdequacy(nuisances.With(nuisances.Residual(k)), {}, true, k);
+    p.push_back(test.p);
+    p_unknown_force.push_back(test.p_unknown_force);
+    p_variance.push_back(test.p_variance);
+  }
+  // One in a hundred samples of uniform numbers is further away. Draws of noise alone give
+  // distances of 0.38, 0.18 and 0.39.
+  const double limit = 1.63 / std::sqrt(kRecordings);
+  EXPECT_LT(DistanceFromUniform(p), limit);
+  EXPECT_LT(DistanceFromUniform(p_unknown_force), limit);
+  EXPECT_LT(DistanceFromUniform(p_variance), limit);
+}
+
+// The model error has its length beside the base, however much of its direction the base contains.
+TEST(Adequacy, ExpectsTheModelErrorBesideTheBase) {
+  const SpaceWithNuisances nuisances;
+  constexpr double kModelError = 10;
+  constexpr int kRecordings = 40;
+  std::vector<std::vector<int>> along;  // the unknown force, then the effects
+  for (const WeighedHypothesis& hypothesis : nuisances.hypotheses)
+    if (hypothesis.kind != HypothesisKind::kNuisance) along.push_back(hypothesis.columns);
+  std::rotate(along.begin(), along.end() - 1, along.end());
+  const HypothesisSpace plain = nuisances.With(SyntheticSpace::Noise(0));
+  const ProjectedHypotheses beside_base(plain);
+  double mean = 0, mean_of_force = 0;
+  for (uint64_t k = 0; k < kRecordings; ++k) {
+    const std::vector<int>& own =
+        along[k % 2 == 0 ? 0 : 1 + RandomBits({k, 51}) % (along.size() - 1)];
+    Eigen::VectorXd amounts(static_cast<Eigen::Index>(own.size()));
+    for (Eigen::Index j = 0; j < amounts.size(); ++j)
+      amounts[j] = Normal(RandomBits({k, 52, static_cast<uint64_t>(j)}));
+    amounts *= std::sqrt(2 * kModelError / amounts.dot(beside_base.products()(own, own) * amounts));
+    HypothesisSpace space =
+        nuisances.With(nuisances.Residual(k) + nuisances.columns(Eigen::all, own) * amounts);
+    space.model_error = kModelError;
+    const AdequacyTest test = TestAdequacy(space, {}, false, k);
+    mean += test.p / kRecordings;
+    mean_of_force += test.p_unknown_force / kRecordings;
+  }
+  // The standard deviation of these means is 0.05. An error that has its length before the base is
+  // fitted gives 0.2 and 0.3.
+  EXPECT_NEAR(mean, 0.5, 0.15);
+  EXPECT_NEAR(mean_of_force, 0.5, 0.15);
+}
+
+// The variance is judged by the given noise, also where the hypotheses are weighed with more.
+TEST(Adequacy, JudgesTheVarianceByTheGivenNoise) {
+  const SpaceWithNuisances nuisances;
+  HypothesisSpace space = nuisances.With(nuisances.Residual(3));
+  const double given = TestAdequacy(space, {}, true, 1).found.variance;
+  EXPECT_NEAR(given, 1, 0.2);  // its standard deviation is 0.06
+  space.variance = 1.5;
+  EXPECT_NEAR(TestAdequacy(space, {}, true, 1).found.variance, given, 1e-9);
+  EXPECT_GT(std::abs(TestAdequacy(space, {}, false, 1).found.variance - given), 1e-3);
+}
+
+TEST(Adequacy, CountsWhatIsLeftAsEvidenceOrAsExcessOverTheNoise) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(4);
+  const AdequacyTest force =
+      TestAdequacy(synthetic.With(noise + 4 * synthetic.unknown.rowwise().sum()), {}, true, 1);
+  EXPECT_EQ(force.left, 2 * force.found.unknown_force);
+  EXPECT_GT(force.left, 50);
+  // No force and no effect explains noise that is too large.
+  const HypothesisSpace noisy = synthetic.With(1.3 * noise);
+  const double freedom = SyntheticSpace::kRows - SyntheticSpace::kBase;
+  const AdequacyTest known = TestAdequacy(noisy, {}, true, 1);
+  EXPECT_NEAR(known.left, (known.found.variance - 1) * freedom, 1e-6);
+  EXPECT_GT(known.left, 100);
+  EXPECT_LT(TestAdequacy(noisy, {}, false, 1).left, 5);
 }
 
 TEST(Adequacy, SeesAForceAnEffectAndTooMuchNoise) {

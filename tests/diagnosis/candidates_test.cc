@@ -120,6 +120,28 @@ TEST(Candidates, TrySupportsOnEachSideThatIsNotGripped) {
   }
 }
 
+// A refit moves a place, an angle or a time, but not a setting such as the side of the body.
+TEST(Candidates, ReachTheVariantsThatDifferInWhatARefitMoves) {
+  const TetMesh bar = BoxMesh({0, -0.01, -0.01}, {0.09, 0.01, 0.01}, {9, 2, 2});
+  const auto share = [&](const std::string& type, const std::string& variant) {
+    const std::vector<CandidateEffect> all = CandidatesOf(bar, type);
+    for (const CandidateEffect& candidate : all)
+      if (variant.empty() || candidate.variant == variant) return ReachableShare(candidate, all);
+    ADD_FAILURE() << type << " has no variant " << variant;
+    return 0.0;
+  };
+  EXPECT_EQ(share("drag", ""), 1);
+  EXPECT_EQ(share("attached_mass", "at 50 % of the length"), 1);
+  EXPECT_EQ(share("fibre_stiffness", ""), 1);
+  EXPECT_EQ(share("active_contraction", ""), 1.0 / 13);
+  // The girth; six sides, four of them long ones with three places each.
+  const double variants = 4 + 6 + 4 * 3;
+  EXPECT_EQ(share("elastic_support", "of the whole surface"), 1 / variants);
+  EXPECT_EQ(share("elastic_support", "at 50 % of the length"), 3 / variants);
+  EXPECT_EQ(share("elastic_support", "on the −z side"), 1 / variants);
+  EXPECT_EQ(share("elastic_support", "on the −z side at x = 45 mm"), 3 / variants);
+}
+
 TEST(Candidates, HavePlacesAlongABar) {
   const TetMesh bar = BoxMesh({0, 0, 0}, {0.08, 0.02, 0.02}, {8, 2, 2});
   const std::vector<CandidateEffect> masses = CandidatesOf(bar, "attached_mass");

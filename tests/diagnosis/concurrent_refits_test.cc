@@ -9,16 +9,11 @@
 #include "diagnosis/effect_refit.h"
 #include "effects/catalogue.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
-
-ProgressOptions Silent() {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  return silent;
-}
 
 ScoredEffect Candidate(const std::string& type, const std::map<std::string, double>& at_null,
                        double expected, const Eigen::VectorXd& fitted) {
@@ -34,7 +29,7 @@ TEST(ConcurrentRefits, FindTheSameBitsAsOneAfterTheOther) {
   WriteBarRecording(folder.Path(), FilmHeldBar({}));
   const PredictionStudy study = ReadBarStudy(folder.Path());
   const CalibrationProblem problem(study, BarMesh({4, 1, 1}, 1));
-  Progress progress(Silent());
+  SilentProgress progress;
   const Calibration fit = FitShortHorizon(problem, problem.Start(), &progress);
   ASSERT_FALSE(fit.estimates.empty()) << fit.message;
   const LinearisedMisfit misfit = problem.Linearise(fit.parameters, true);
@@ -46,7 +41,7 @@ TEST(ConcurrentRefits, FindTheSameBitsAsOneAfterTheOther) {
                 {{"modulus", 0}, {"relaxation_time", 0.03}, {"poisson_ratio", 0.4}}, 1e4,
                 fit.parameters)};
   const auto refit = [&](const ScoredEffect& effect) {
-    Progress own(Silent());
+    SilentProgress own;
     return Refit({problem, fit.parameters, misfit, &own}, &effect,
                  {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0}, false);
   };

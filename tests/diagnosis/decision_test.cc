@@ -18,6 +18,7 @@ namespace lacuna {
 namespace {
 
 using testing::ElementsAre;
+using testing::Not;
 using testing::UnorderedElementsAre;
 using Kind = HypothesisProbability::Kind;
 
@@ -86,6 +87,23 @@ TEST(DecisionRules, StatesWhatTheHypothesesHaveInCommon) {
   EXPECT_EQ(naming.level, Naming::Level::kCommon);
   EXPECT_EQ(naming.kept.size(), 2u);
   EXPECT_THAT(naming.names, ElementsAre("a"));
+}
+
+// A nuisance beside an effect is no rival of another effect.
+TEST(DecisionRules, NamesNuisancesOnlyWhereTheyStandAlone) {
+  const auto names = [](std::vector<HypothesisProbability> all) {
+    SetPosterior(&all);
+    return NameFrom(all).names;
+  };
+  HypothesisProbability beside = One(Kind::kEffect, "a", 40);
+  beside.names.push_back("n");
+  const HypothesisProbability other = One(Kind::kEffect, "b", 40),
+                              nothing = One(Kind::kNothing, "", 0);
+  EXPECT_THAT(
+      names({nothing, beside, other, One(Kind::kNuisance, "n", 3), One(Kind::kNuisance, "m", 40)}),
+      UnorderedElementsAre("a", "b", "m"));
+  EXPECT_THAT(names({nothing, beside, One(Kind::kEffect, "a", 39), One(Kind::kNuisance, "n", 3)}),
+              ElementsAre("a"));
 }
 
 TEST(Decide, CallsNoiseAdequate) {
@@ -162,6 +180,59 @@ TEST(Decide, TakesWhatANuisanceExplainsBesideAnEffectForNothingUnknown) {
   EXPECT_FALSE(unknown.record.adequacy.is_adequate);
 }
 
+// Beside the effect, the error of a clock explains what is left better than a second effect that
+// resembles it. The effect is missing, and the second one is not.
+TEST(Decide, WeighsNuisancesBesideAnEffectAgainstFurtherEffects) {
+  SyntheticSpace synthetic;
+  const Eigen::VectorXd clock = synthetic.Of("clock").col(0);
+  synthetic.Add(HypothesisKind::kEffect, "pressure",
+                clock + 0.4 * SyntheticSpace::Noise(33) / std::sqrt(SyntheticSpace::kRows));
+  const Eigen::VectorXd without = SyntheticSpace::Noise(15) - 60 * synthetic.Of("fibres").col(0);
+  const Decision decision = Decide(InputOf(synthetic, without - 12 * clock));
+  EXPECT_EQ(decision.verdict, Verdict::kMissing);
+  EXPECT_THAT(decision.names, ElementsAre("fibres"));
+  const HypothesisProbability& best = decision.record.probabilities.front();
+  EXPECT_EQ(best.kind, Kind::kEffect);
+  EXPECT_EQ(best.family, EffectFamily::kStiffnessDistribution);
+  EXPECT_THAT(best.names, ElementsAre("fibres", "clock"));
+  EXPECT_THAT(decision.record.adequacy.beside, ElementsAre("fibres", "clock"));
+  EXPECT_TRUE(decision.record.adequacy.is_adequate);
+  // The second effect is named where it is the one that is missing.
+  EXPECT_THAT(Decide(InputOf(synthetic, without - 12 * synthetic.Of("pressure").col(0))).names,
+              UnorderedElementsAre("fibres", "pressure"));
+  // Whether or not there is such an error, the effect is missing.
+  const Decision either = Decide(
+      InputOf(synthetic, SyntheticSpace::Noise(15) - 20 * synthetic.Of("fibres") - 3 * clock));
+  EXPECT_EQ(either.verdict, Verdict::kMissing);
+  EXPECT_THAT(either.names, ElementsAre("fibres"));
+  for (const size_t k : {0u, 1u}) {
+    EXPECT_TRUE(either.record.probabilities[k].Contains("fibres"));
+    EXPECT_LT(either.record.probabilities[k].probability, kStatedProbability);
+  }
+  EXPECT_GT(either.record.FamilyProbability(EffectFamily::kStiffnessDistribution),
+            kStatedProbability);
+}
+
+// The estimate of a pair that was not fitted is kept low. A nuisance that explains less than the
+// further effect must not take advantage of that.
+TEST(Decide, WeighsANuisanceAgainstAPairOnlyAfterItsFit) {
+  SyntheticSpace synthetic;
+  const Eigen::VectorXd fibres = synthetic.Of("fibres").col(0);
+  synthetic.Add(HypothesisKind::kNuisance, "slip",
+                fibres + 0.7 * SyntheticSpace::Noise(34) / std::sqrt(SyntheticSpace::kRows));
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(13), left = noise - 10 * fibres;
+  DecisionInput input =
+      InputOf(synthetic, left - synthetic.Of("gravity") * Eigen::Vector3d(12, -9, 8));
+  input.refits.push_back({"gravity", 100, synthetic.With(left)});
+  input.refits.push_back({"fibres", 5, synthetic.With(noise)});  // gravity gains nothing beside it
+  EXPECT_THAT(Decide(input).record.probabilities.front().names, ElementsAre("gravity"));
+  input.pairs.push_back({"gravity", "fibres", 45, synthetic.With(noise)});
+  EXPECT_THAT(Decide(input).record.probabilities.front().names, ElementsAre("gravity", "fibres"));
+  // The fit may show that first order has overrated the pair.
+  input.pairs.front().gain = 10;
+  EXPECT_THAT(Decide(input).record.probabilities.front().names, ElementsAre("gravity", "slip"));
+}
+
 // A refit replaces the first-order evidence, and its own residual is tested.
 TEST(Decide, BelievesARefitMoreThanFirstOrder) {
   const SyntheticSpace synthetic;
@@ -213,12 +284,83 @@ TEST(Decide, WeighsEveryPairThatWasFitted) {
   EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "drag"));
   input.pairs.push_back({"gravity", "mass_damping", 60, synthetic.With(noise)});
   EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "mass_damping"));
-  // A pair is not named if one of its effects is refuted.
-  input.refits.push_back({"mass_damping", 20, synthetic.With(noise), /*predicts=*/false});
+  // A pair is not named if it is refuted itself.
+  input.pairs.back().predicts = false;
   EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "drag"));
-  input.refits.front().predicts = false;
+  // Another pair may then be the best one to first order.
+  input.pairs.erase(input.pairs.begin());
+  EXPECT_THAT(Decide(input).names, UnorderedElementsAre("gravity", "drag"));
+  // Only what can be fitted is believed.
+  input.failed_pairs = {{"drag", "gravity"}};
+  EXPECT_THAT(Decide(input).names, Not(UnorderedElementsAre("gravity", "drag")));
+}
+
+// If two effects are missing, the model with one of them may predict worse than that without any.
+TEST(Decide, NamesAPairOfWhichOneEffectAloneIsRefuted) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(13);
+  const Eigen::VectorXd gravity = synthetic.Of("gravity") * Eigen::Vector3d(12, -9, 8);
+  const Eigen::VectorXd fibres = 10 * synthetic.Of("fibres");
+  DecisionInput input = InputOf(synthetic, noise - gravity - fibres);
+  input.refits.push_back({"gravity", 100, synthetic.With(noise - fibres)});
+  input.refits.push_back({"fibres", 30, synthetic.With(noise - gravity), /*predicts=*/false});
+  const auto pair = UnorderedElementsAre("gravity", "fibres");
+  EXPECT_THAT(Decide(input).names, pair);  // to first order
+  input.pairs.push_back({"gravity", "fibres", 40, synthetic.With(noise)});
+  EXPECT_THAT(Decide(input).names, pair);
+  // Whichever of the two was fitted first.
+  input.pairs.front() = {"fibres", "gravity", 130, synthetic.With(noise)};
+  EXPECT_THAT(Decide(input).names, pair);
+  input.pairs.front().predicts = false;
+  EXPECT_THAT(Decide(input).names, ElementsAre("gravity"));
+  // Before a fit, nothing tells that a second effect would mend the prediction of a refuted one.
+  input.pairs.clear();
+  for (WeighedRefit& refit : input.refits) refit.predicts = false;
   for (const HypothesisProbability& one : Decide(input).record.probabilities)
-    EXPECT_FALSE(one.Contains("gravity") && one.kind == Kind::kPair);
+    EXPECT_NE(one.kind, Kind::kPair);
+}
+
+// A model has one law of elasticity, so that no two of them are missing together.
+TEST(Decide, PairsNoTwoElasticityLaws) {
+  SyntheticSpace synthetic;
+  const double unit = 1 / std::sqrt(static_cast<double>(SyntheticSpace::kRows));
+  synthetic.Add(HypothesisKind::kEffect, "neo_hookean", unit * SyntheticSpace::Noise(31));
+  synthetic.Add(HypothesisKind::kEffect, "linear", unit * SyntheticSpace::Noise(32));
+  const Eigen::VectorXd left = SyntheticSpace::Noise(13) - 10 * synthetic.Of("linear");
+  DecisionInput input = InputOf(synthetic, left - 12 * synthetic.Of("neo_hookean"));
+  input.refits.push_back({"neo_hookean", 70, synthetic.With(left)});
+  const Decision decision = Decide(input);
+  EXPECT_THAT(decision.names, ElementsAre("neo_hookean"));
+  for (const HypothesisProbability& one : decision.record.probabilities)
+    EXPECT_FALSE(one.Contains("neo_hookean") && one.Contains("linear"));
+  // A law and another effect may be.
+  const Eigen::VectorXd fibres = 10 * synthetic.Of("fibres");
+  input.baseline = synthetic.With(left - 12 * synthetic.Of("neo_hookean") - fibres);
+  input.refits.front().space = synthetic.With(left - fibres);
+  EXPECT_THAT(Decide(input).names, UnorderedElementsAre("neo_hookean", "fibres"));
+}
+
+// The second effect of a pair must gain more than the error that the model of the first one may
+// have: as much as if the first one had been added, and the model diagnosed again.
+TEST(Decide, AsksOfAPairWhatTheNextRoundWouldAskOfItsSecondEffect) {
+  const SyntheticSpace synthetic;
+  const HypothesisSpace adequate = synthetic.With(SyntheticSpace::Noise(13));
+  DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(13) - 40 * synthetic.Of("fibres"));
+  input.refits.push_back({"fibres", 2000, adequate});
+  input.pairs.push_back({"fibres", "gravity", 15, adequate});
+  EXPECT_THAT(Decide(input).names, ElementsAre("fibres"));
+  input.pairs.front().gain = 40;
+  EXPECT_THAT(Decide(input).names, UnorderedElementsAre("fibres", "gravity"));
+  const std::vector<HypothesisProbability> all = Decide(input).record.probabilities;
+  const double alone = 2000 - std::log(4);  // of four effects
+  EXPECT_NEAR(all[0].evidence - alone,
+              40 - std::log(4) - kToleratedModelError * alone + std::log(2), 1e-9);
+  // The order in which the two were fitted makes no difference.
+  input.refits.push_back({"gravity", 100, adequate});
+  input.pairs.front() = {"gravity", "fibres", 1915, adequate};
+  EXPECT_THAT(Decide(input).names, ElementsAre("fibres"));
+  input.pairs.front().gain = 1940;
+  EXPECT_THAT(Decide(input).names, UnorderedElementsAre("fibres", "gravity"));
 }
 
 // An effect that does not lower the error of the held-out frames is not named, alone or in a pair.
@@ -258,6 +400,20 @@ TEST(Decide, WeighsAdoptedNuisancesAgainstEffectsInTheirPlace) {
   EXPECT_EQ(Decide(input).verdict, Verdict::kNotInLibrary);
 }
 
+// An effect in place of adopted nuisances keeps what its natural value is worth.
+TEST(Decide, BelievesANaturalValueInPlaceOfAdoptedNuisances) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(16);
+  DecisionInput input = InputOf(synthetic, noise);
+  input.adopted = {"jitter"};
+  input.adopted_evidence = 200;
+  input.in_place_of_adopted.push_back({"gravity", 195, synthetic.With(noise)});
+  EXPECT_THAT(Decide(input).names, ElementsAre("jitter"));
+  input.natural_value["gravity"] = 10;
+  EXPECT_EQ(Decide(input).verdict, Verdict::kMissing);
+  EXPECT_THAT(Decide(input).names, ElementsAre("gravity"));
+}
+
 // Two rivals that share the nuisance of every model: an effect is missing, not the nuisance.
 TEST(Decide, DoesNotTakeASharedNuisanceForWhatIsMissing) {
   const SyntheticSpace alike(0.05);
@@ -269,9 +425,13 @@ TEST(Decide, DoesNotTakeASharedNuisanceForWhatIsMissing) {
   EXPECT_THAT(decision.names, UnorderedElementsAre("drag", "mass_damping"));
 }
 
-// The order of the recordings does not matter to nuisances of one name.
-TEST(Decide, TakesTheBestOfTheNuisancesOfOneName) {
-  const SyntheticSpace synthetic;
+// Nuisances of one name, one for each recording or grip, are averaged like the variants of an
+// effect. Their order does not matter.
+TEST(Decide, AveragesTheNuisancesOfOneName) {
+  SyntheticSpace synthetic;
+  for (const uint64_t seed : {41u, 42u})
+    synthetic.Add(HypothesisKind::kNuisance, "clock",
+                  SyntheticSpace::Noise(seed) / std::sqrt(SyntheticSpace::kRows));
   DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(17));
   const auto evidence = [&] {
     for (const HypothesisProbability& one : Decide(input).record.probabilities)
@@ -282,7 +442,11 @@ TEST(Decide, TakesTheBestOfTheNuisancesOfOneName) {
   const double one_order = evidence();
   std::swap(input.nuisances[0], input.nuisances[1]);
   EXPECT_EQ(evidence(), one_order);
-  EXPECT_NEAR(one_order, 30, 1e-9);
+  EXPECT_NEAR(one_order, 30 - std::log(3), 1e-6);
+  // One that was not refitted counts as well.
+  input.nuisances.pop_back();
+  input.nuisances.front().evidence = 30;
+  EXPECT_NEAR(evidence(), 30 - std::log(3), 1e-9);
 }
 
 TEST(NaturalValue, IsBelievedWhereItIsMet) {
@@ -340,7 +504,7 @@ TEST(RecordingPower, SaysWhetherAnEffectOutsideTheCatalogueWouldBeSeen) {
       InputOf(synthetic, SyntheticSpace::Noise(17) - 12 * synthetic.Of("drag"));
   const std::optional<RecordedPower> known = PowerToFind(drag, "drag", true);
   ASSERT_TRUE(known);
-  EXPECT_GT(known->named, 0.7);
+  EXPECT_GT(known->named, 0.6);
   // Mass damping takes its place.
   const std::optional<RecordedPower> unknown = PowerToFind(drag, "drag", false);
   ASSERT_TRUE(unknown);
@@ -361,6 +525,7 @@ TEST(DecisionStore, DecidesAgainAsBefore) {
   DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(18) - 9 * synthetic.Of("drag"));
   input.refits.push_back({"drag", 30, synthetic.With(SyntheticSpace::Noise(18))});
   input.pairs.push_back({"drag", "fibres", 7, synthetic.With(SyntheticSpace::Noise(20)), false});
+  input.failed_pairs = {{"drag", "gravity"}};
   input.nuisances.push_back({"clock", 2});
   input.natural_value["gravity"] = 1.5;
   input.baseline.hypotheses.front().selection_penalty = 0.7;
@@ -370,6 +535,7 @@ TEST(DecisionStore, DecidesAgainAsBefore) {
   const TemporaryFolder folder;
   SaveDecisionInput(input, folder / "decision");
   const DecisionInput read = LoadDecisionInput(folder / "decision");
+  EXPECT_EQ(read.failed_pairs, input.failed_pairs);
   const Decision before = Decide(input), after = Decide(read);
   EXPECT_EQ(after.verdict, before.verdict);
   EXPECT_EQ(after.names, before.names);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/calibration_fits.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -14,7 +15,7 @@ Diagnosis DiagnoseBar(const HeldBarTruth& truth, const std::map<std::string, std
   const PredictionStudy study = ReadBarStudy(folder.Path(), replaced);
   const TetMesh mesh = BarMesh(cells, 2);
   const CalibrationProblem problem(study, mesh);
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const Calibration calibration = FitFromStart(problem, &progress);
   EXPECT_TRUE(calibration.usable) << calibration.message;
   return Diagnose(problem, calibration.parameters, options, &progress);

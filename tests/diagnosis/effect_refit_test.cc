@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -13,6 +14,7 @@
 #include "diagnosis/projected_hypotheses.h"
 #include "effects/catalogue.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -138,6 +140,9 @@ TEST(Predicts, AllowsForChanceButNotForMore) {
   EffectRefit with = MakeRefit(true, 2, false, &random);
   EffectRefit without = MakeRefit(false, 2, false, &same);
   EXPECT_FALSE(Predicts(with, without, kWhite));
+  EffectRefit unconverged = with;
+  unconverged.unconverged = "the search was ended";
+  EXPECT_TRUE(Predicts(unconverged, without, kWhite)) << "other parameters may predict better";
   without.errors.has_held_out = false;
   EXPECT_TRUE(Predicts(with, without, kWhite));
 }
@@ -265,16 +270,10 @@ class OfACoarseBar : public ::testing::Test {
     problem_.emplace(study_, BarMesh({6, 2, 2}, 1));
   }
 
-  static ProgressOptions Silent() {
-    ProgressOptions silent;
-    silent.style = ProgressStyle::kSilent;
-    return silent;
-  }
-
   const TemporaryFolder folder_;
   PredictionStudy study_;
   std::optional<CalibrationProblem> problem_;
-  Progress progress_{Silent()};
+  SilentProgress progress_;
 };
 using EffectRankingOfACoarseBar = OfACoarseBar;
 
@@ -343,8 +342,8 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithoutTheEffect) {
 }
 
 // Columns that were computed along another motion take their part of the residual, and the
-// parameters follow. The same columns change nothing.
-TEST_F(EffectRefitOfACoarseBar, IsSettledBesideOtherNuisances) {
+// parameters follow. The same columns change little.
+TEST_F(EffectRefitOfACoarseBar, IsFittedAnewBesideOtherNuisances) {
   ScoredEffect drag;
   drag.candidate = {"drag", "", MakeEffect("drag", {{"coefficient", 1}}), {0}};
   drag.score.size = Eigen::VectorXd::Constant(1, 1);
@@ -354,23 +353,46 @@ TEST_F(EffectRefitOfACoarseBar, IsSettledBesideOtherNuisances) {
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   const NoiseLevel white{0, 1};
   const RefitEvidence before = EvidenceOf(refit, white);
+  const auto beside = [&](const AdoptedNuisances& nuisances) {
+    return RefitFromValues(baseline, drag, nuisances, refit.values_at_fit);
+  };
 
-  const RefitEvidence same = EvidenceOf(BesideNuisances(baseline, drag, none_, refit), white);
-  EXPECT_NEAR(same.all, before.all, 0.5);
-  EXPECT_NEAR(same.held_out, before.held_out, 0.5);
+  const RefitEvidence same = EvidenceOf(beside(none_), white);
+  EXPECT_NEAR(same.all, before.all, 0.01 * before.misfit);
 
   // A column that explains the residual as it is.
   const AdoptedNuisances errors{refit.hypothesis.misfit.residual, {{-1, 0.01, false}}, 1};
-  const EffectRefit settled = BesideNuisances(baseline, drag, errors, refit);
-  EXPECT_LT(EvidenceOf(settled, white).misfit, 0.01 * before.misfit);
-  EXPECT_GT(EvidenceOf(settled, white).all, before.all + 0.45 * before.misfit);
-  EXPECT_EQ(settled.hypothesis.misfit.jacobian.cols(), settled.hypothesis.parameters + 1);
+  const EffectRefit explained = beside(errors);
+  EXPECT_LT(EvidenceOf(explained, white).misfit, 0.01 * before.misfit);
+  EXPECT_GT(EvidenceOf(explained, white).all, before.all + 0.45 * before.misfit);
+  EXPECT_EQ(explained.hypothesis.misfit.jacobian.cols(), explained.hypothesis.parameters + 1);
   // A column that pushes the model by one per cent of a parameter, which returns.
   const Eigen::VectorXd pushed =
       0.01 * fit_.parameters[0] * refit.hypothesis.misfit.jacobian.col(0);
-  const AdoptedNuisances shifted{pushed, {{1, 1e-3, false}}, 1};
-  const EffectRefit moved = BesideNuisances(baseline, drag, shifted, refit);
+  const EffectRefit moved = beside({pushed, {{1, 1e-3, false}}, 1});
   EXPECT_NEAR(EvidenceOf(moved, white).misfit, before.misfit, 0.02 * before.misfit);
+  // Values beyond a bound start there.
+  Eigen::VectorXd beyond = refit.values_at_fit;
+  beyond[refit.model.size()] = -1;  // the coefficient, which must not be negative
+  EXPECT_TRUE(RefitFromValues(baseline, drag, none_, beyond).message.empty());
+}
+
+// The search is given up after its first steps, as one that another effect has beaten.
+TEST_F(EffectRefitOfACoarseBar, SaysWhyItHasNotConverged) {
+  ScoredEffect drag;
+  drag.candidate = {"drag", "", MakeEffect("drag", {{"coefficient", 1}}), {0}};
+  drag.score.size = Eigen::VectorXd::Constant(1, 1);
+  drag.expected_values = fit_.parameters;
+  const BaselineModel baseline{*problem_, fit_.parameters, misfit_, &progress_};
+  const ExtendedProblem extended(baseline, &drag, none_);
+  Eigen::VectorXd far = extended.problem().Start();
+  far.head(2) = fit_.parameters.head(2);
+  far[0] *= 30;
+  const EffectRefit refit =
+      RefitFromValues(baseline, drag, none_, far, -std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(refit.message.empty()) << refit.message;
+  EXPECT_NE(refit.unconverged.find("would not come close enough"), std::string::npos)
+      << refit.unconverged;
 }
 
 }  // namespace

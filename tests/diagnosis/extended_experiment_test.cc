@@ -12,6 +12,7 @@
 #include "effects/catalogue.h"
 #include "prediction/prediction_study_reader.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -28,7 +29,7 @@ std::filesystem::path FitBar(const std::filesystem::path& folder, const std::str
                {"  - {type: mass_damping, alpha: 1 1/s}\n", ""},
                {", {name: mass_damping.alpha}", ""}});
   const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "bar.yaml"));
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   EXPECT_TRUE(RunCalibration(study, &progress).usable);
   return study.output;
 }
@@ -99,7 +100,7 @@ TEST(ExtendedExperiment, ALawOfTheUsersOwnIsRankedAndAddedLikeTheCatalogues) {
   const std::filesystem::path run =
       FitBar(folder.Path(), "\ncandidates:\n  - " + damping + "\n  - " + push);
   const FittedRun fitted = OpenRun(run);
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const EffectRanking ranking =
       RankEffects(CalibrationProblem(fitted.study, fitted.mesh), fitted.values, &progress);
   const auto scored = [&](const std::string& type) {
@@ -153,7 +154,7 @@ TEST(ExtendedExperiment, ARunFromTheExperimentsOwnFolderIsOpened) {
       folder.Path(), {{"max_volume: 1000 mm^3", "max_volume: 2000 mm^3, preserve_surface: false"}});
   std::filesystem::current_path(folder / "experiments");
   const PredictionStudy study = ReadPredictionStudy(Config::Load("bar.yaml"));
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   EXPECT_TRUE(RunCalibration(study, &progress).usable);
   EXPECT_NO_THROW(OpenRun(study.output));
   std::filesystem::current_path(before);

@@ -11,16 +11,11 @@
 #include "prediction/prediction_study_reader.h"
 #include "report/ledger_report.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
-
-ProgressOptions Silent() {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  return silent;
-}
 
 // A run of a bar whose damping the model lacks.
 std::filesystem::path FitBarWithoutDamping(const std::filesystem::path& folder) {
@@ -32,7 +27,7 @@ std::filesystem::path FitBarWithoutDamping(const std::filesystem::path& folder) 
                {"max_volume: 1000 mm^3", "max_volume: 2000 mm^3, preserve_surface: false"},
                {"  - {type: mass_damping, alpha: 1 1/s}\n", ""},
                {", {name: mass_damping.alpha}", ""}});
-  Progress progress(Silent());
+  SilentProgress progress;
   EXPECT_TRUE(
       RunCalibration(ReadPredictionStudy(Config::Load(folder / "bar.yaml")), &progress).usable);
   return folder / "runs/bar";
@@ -44,7 +39,7 @@ TEST(ExtensionRounds, AddTheMissingEffectAndResumeToTheSameLedger) {
   ExtensionOptions options;
   options.most_effects = 1;
   options.follow_best = true;  // drag and damping look alike here
-  Progress progress(Silent());
+  SilentProgress progress;
   int changes = 0;
   const Ledger ledger = ExtendUntilDone(run, options, &progress, [&](const Ledger& now) {
     ++changes;

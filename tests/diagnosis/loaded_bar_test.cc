@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <random>
 #include <sstream>
 #include <utility>
+#include <variant>
 
 #include "calibration/adaptive_time_step.h"
 #include "calibration/calibration_fits.h"
@@ -16,6 +18,7 @@
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/recorded_diagnosis.h"
+#include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
 #include "fem/prescribed_force.h"
 #include "fem/simulate.h"
@@ -23,6 +26,7 @@
 #include "prediction/prediction_study_reader.h"
 #include "report/verdict_text.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -77,12 +81,6 @@ std::vector<Eigen::Matrix3Xd> Film(const std::vector<std::shared_ptr<const Effec
 
 class LoadedBar : public testing::Test {
  protected:
-  LoadedBar() {
-    ProgressOptions silent;
-    silent.style = ProgressStyle::kSilent;
-    progress_ = std::make_unique<Progress>(silent);
-  }
-
   PredictionStudy Record(const std::vector<std::shared_ptr<const Effect>>& hidden,
                          const std::string& more = "", const std::string& effects = "") {
     WriteBarRecording(folder_.Path(), Film(hidden));
@@ -129,13 +127,13 @@ place_deviation: 0.1 mm
   }
 
   TemporaryFolder folder_;
-  std::unique_ptr<Progress> progress_;
+  SilentProgress progress_;
 };
 
 TEST_F(LoadedBar, IsFittedInAStepAFrame) {
   PredictionStudy study = Record({});
   EXPECT_EQ(study.time_step, 1);
-  const AdaptedFit fit = FitWithAdaptiveTimeStep(BarMesh({7, 2, 2}, 2), &study, progress_.get());
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(BarMesh({7, 2, 2}, 2), &study, &progress_);
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   EXPECT_EQ(study.time_step, 1);  // nothing depends on rates
   EXPECT_LT(fit.step_error, 0.01);
@@ -161,7 +159,7 @@ TEST_F(LoadedBar, RecoversAPartlySupportedSide) {
       "min: 3 mm, max: 40 mm}]}\n",
       ", {type: elastic_support, modulus: 30 kPa/m, side: [0, 0, -1], point: [35 mm, 0 m, -10 mm], "
       "radius: 15 mm}");
-  const AdaptedFit fit = FitWithAdaptiveTimeStep(BarMesh({7, 2, 2}, 2), &study, progress_.get());
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(BarMesh({7, 2, 2}, 2), &study, &progress_);
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   EXPECT_LT(fit.calibration.rms, 1.3);
   const Eigen::VectorXd& found = fit.calibration.parameters;
@@ -181,11 +179,11 @@ TEST_F(LoadedBar, RecoversAPartlySupportedSide) {
 TEST_F(LoadedBar, TriesASupportOnEachSide) {
   PredictionStudy study = Record({BedBelow()});
   const TetMesh mesh = BarMesh({7, 1, 1}, 2);
-  const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, &study, progress_.get());
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, &study, &progress_);
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   const CalibrationProblem problem(study, mesh);
   const EffectRanking ranking =
-      RankEffects(problem, fit.calibration.parameters, progress_.get(), {}, {});
+      RankEffects(problem, fit.calibration.parameters, &progress_, {}, {});
   const auto support = std::find_if(
       ranking.effects.begin(), ranking.effects.end(),
       [](const ScoredEffect& effect) { return effect.candidate.type == "elastic_support"; });
@@ -200,7 +198,7 @@ TEST_F(LoadedBar, RecoversASwellingAndPoissonsRatio) {
                                  "fit: {parameters: [{name: young_modulus}, {name: poisson_ratio}, "
                                  "{name: swelling.strain}]}\n",
                                  ", {type: swelling, strain: 0}");
-  const AdaptedFit fit = FitWithAdaptiveTimeStep(BarMesh({7, 2, 2}, 2), &study, progress_.get());
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(BarMesh({7, 2, 2}, 2), &study, &progress_);
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   EXPECT_LT(fit.calibration.rms, 1.3);
   EXPECT_NEAR(fit.calibration.parameters[0], kModulus, 0.03 * kModulus);
@@ -255,13 +253,12 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
       Record({MakeEffect("viscoelastic_branch",
                          {{"modulus", 4e4}, {"relaxation_time", 2.5}, {"poisson_ratio", kRatio}})});
   const TetMesh mesh = BarMesh({7, 1, 1}, 2);
-  const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, &study, progress_.get());
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, &study, &progress_);
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   const CalibrationProblem problem(study, mesh);
   DiagnosisOptions options;
   options.refits = 2;
-  const Diagnosis diagnosis =
-      Diagnose(problem, fit.calibration.parameters, options, progress_.get());
+  const Diagnosis diagnosis = Diagnose(problem, fit.calibration.parameters, options, &progress_);
   EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << ExplainVerdict(RecordOf(diagnosis));
   EXPECT_THAT(diagnosis.effects, testing::ElementsAre("viscoelastic_branch"));
   for (const RankedEffect& effect : diagnosis.ranking) {
@@ -342,6 +339,19 @@ gripped:
     expected += jitter->columns.row(row).squaredNorm();
   }
   EXPECT_NEAR(std::sqrt(seen / expected), 1, 0.25);
+  EXPECT_TRUE(jitter->left_out.empty());
+
+  // With too many frames for a column each, the recording is named instead.
+  LinearisedMisfit many = misfit;
+  many.parts.front().layout.times.resize(kThresholds.nuisances.most_single_frames + 1);
+  for (const NuisanceEntry& entry : NuisanceCatalogue()) {
+    if (entry.card.name != "grip_jitter") continue;
+    const std::optional<NuisanceCandidate> made =
+        std::get<ModelNuisance>(entry.make)({problem, start, many, grips, grip_columns});
+    ASSERT_TRUE(made.has_value());
+    EXPECT_EQ(made->columns.cols(), 0);
+    EXPECT_THAT(made->left_out, testing::ElementsAre(study.recordings.front().name));
+  }
 }
 
 }  // namespace

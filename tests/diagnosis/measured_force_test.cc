@@ -15,6 +15,7 @@
 #include "prediction/prediction_study_reader.h"
 #include "report/verdict_text.h"
 #include "support/pulled_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -31,16 +32,11 @@ struct StiffeningBar {
     problem = std::make_unique<CalibrationProblem>(study, BarMesh({6, 1, 1}, 2));
     values = FitFromStart(*problem, &progress).parameters;
   }
-  static ProgressOptions Silent() {
-    ProgressOptions silent;
-    silent.style = ProgressStyle::kSilent;
-    return silent;
-  }
 
   TemporaryFolder folder;
   PredictionStudy study;
   std::unique_ptr<CalibrationProblem> problem;
-  Progress progress{Silent()};
+  SilentProgress progress;
   Eigen::VectorXd values;
 };
 

@@ -15,6 +15,7 @@
 #include "diagnosis/grip_motions.h"
 #include "prediction/prediction_study_reader.h"
 #include "support/pulled_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -86,6 +87,7 @@ TEST(NuisanceCatalogue, MakesTheNuisancesOfARecordingFromItsFrames) {
   const Eigen::VectorXd all_late = made.at("time_jitter").columns.rowwise().sum();
   EXPECT_LT((all_late - part.speed).norm(), 1e-12 * part.speed.norm());
   EXPECT_EQ(made.at("time_jitter").columns.cols(), frames);
+  EXPECT_TRUE(made.at("time_jitter").left_out.empty());
   const Eigen::MatrixXd& bad = made.at("bad_frame").columns;
   EXPECT_GT(bad.middleRows(5 * part.layout.series, part.layout.series).norm(), 0);
   EXPECT_EQ(bad.topRows(5 * part.layout.series).norm(), 0);
@@ -103,7 +105,7 @@ TEST(NuisanceCatalogue, ExtendsAGripLikeAShorterBar) {
   WriteBarRecording(folder.Path(), FilmHeldBar({}));
   const PredictionStudy study = ReadBarStudy(folder.Path());
   const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const Eigen::VectorXd values = FitInStages(problem, problem.Start(), &progress).parameters;
   const GripMotions grips = MakeGripMotions(problem);
   ASSERT_EQ(grips.grips.size(), 1u);

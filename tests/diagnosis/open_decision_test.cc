@@ -74,8 +74,11 @@ TEST_F(Rivals, ReplaceOneEffectByAnotherOfItsFamily) {
   EXPECT_EQ(RivalsOf(pair_, ranked_, families_)[1].lost, 15);
 }
 
-TEST_F(Rivals, AreNeitherRefutedNorFitted) {
+// A refuted effect may be the further one of a pair, but not the first.
+TEST_F(Rivals, HaveNoRefutedFirstEffectAndAreNotFitted) {
   ranked_.effects[1].predicts = false;
+  ranked_.effects[4] = Refitted("plastic", 20);
+  ranked_.effects[4].predicts = false;
   EXPECT_EQ(Names(), (std::vector<std::string>{"drag, plastic"}));
   FittedPair fitted;
   fitted.first = "drag";

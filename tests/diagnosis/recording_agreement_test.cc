@@ -16,6 +16,7 @@
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 #include "support/uniformity.h"
 
@@ -25,17 +26,11 @@ namespace {
 constexpr double kNoise = 5e-5, kPlaceDeviation = 2e-4;  // m
 constexpr int kPairs = 60;
 
-ProgressOptions Silent() {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  return silent;
-}
-
 // The fit of two recordings without noise, linearised. Noise is added to the residual: it enters
 // linearly. With `alone`, only that recording is fitted.
-struct FittedPair {
+struct TwoRecordings {
   // The second recording's Young's modulus is `factor` times the first one's.
-  explicit FittedPair(double factor, std::optional<int> alone = {}) {
+  explicit TwoRecordings(double factor, std::optional<int> alone = {}) {
     std::string entries;
     for (int r = 0; r < 2; ++r) {
       HeldBarTruth truth;
@@ -62,7 +57,7 @@ struct FittedPair {
     study = ReadPredictionStudy(Config::Parse(text, (folder / "study.yaml").string()));
     mesh = MakeReferenceBody(study).mesh;
     problem.emplace(study, mesh);
-    Progress silent(Silent());
+    SilentProgress silent;
     const Calibration fit = FitFromStart(*problem, &silent);
     values = fit.parameters;
     const GripMotions grips = MakeGripMotions(*problem);
@@ -104,7 +99,7 @@ struct FittedPair {
 };
 
 TEST(RecordingAgreement, HasUniformPValuesWhereRecordingsShareEverything) {
-  const FittedPair pair(1);
+  const TwoRecordings pair(1);
   std::mt19937 random(3);
   std::vector<double> all, of_modulus;
   for (int draw = 0; draw < kPairs; ++draw) {
@@ -118,14 +113,14 @@ TEST(RecordingAgreement, HasUniformPValuesWhereRecordingsShareEverything) {
 }
 
 TEST(RecordingAgreement, NamesTheParameterThatDiffers) {
-  const FittedPair same(1);
+  const TwoRecordings same(1);
   const AgreementRecord agreement = same.Compare(same.misfit);
   const ParameterOfRecordings& modulus = agreement.parameters.front();
   ASSERT_EQ(modulus.name, "young_modulus");
   // Three standard deviations of the difference of both estimates.
   const double apart =
       3 * std::hypot(modulus.deviations[0], modulus.deviations[1]) / modulus.values[0];
-  const FittedPair pair(1 + apart);
+  const TwoRecordings pair(1 + apart);
   std::mt19937 random(5);
   int named = 0, found = 0;
   for (int draw = 0; draw < kPairs; ++draw) {
@@ -143,14 +138,14 @@ TEST(RecordingAgreement, NamesTheParameterThatDiffers) {
 
 // What is estimated from the linearised joint fit is what a fit to one recording finds.
 TEST(RecordingAgreement, EstimatesWhatAFitToOneRecordingFinds) {
-  const FittedPair pair(1.01);
+  const TwoRecordings pair(1.01);
   // The fits know of no error of the mesh, the step or the dimensions.
   AdoptedNuisances none;
   none.columns.resize(pair.misfit.residual.size(), 0);
   const AgreementRecord together =
       CompareRecordings(*pair.problem, pair.values, pair.misfit, none, {0, 1});
   for (int r = 0; r < 2; ++r) {
-    const FittedPair alone(1.01, r);
+    const TwoRecordings alone(1.01, r);
     for (size_t k = 0; k < together.parameters.size(); ++k) {
       const ParameterOfRecordings& parameter = together.parameters[k];
       EXPECT_NEAR(parameter.values[static_cast<size_t>(r)],
@@ -162,7 +157,7 @@ TEST(RecordingAgreement, EstimatesWhatAFitToOneRecordingFinds) {
 }
 
 TEST(RecordingAgreement, NeedsTwoFittedRecordings) {
-  const FittedPair alone(1, 0);
+  const TwoRecordings alone(1, 0);
   const AgreementRecord record = alone.Compare(alone.misfit);
   EXPECT_FALSE(record.Exists());
   EXPECT_FALSE(record.Disagree());

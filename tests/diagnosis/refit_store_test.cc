@@ -10,6 +10,7 @@
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "support/held_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -76,7 +77,7 @@ TEST(RefitStore, AStoppedDiagnosisContinuesToTheSameResult) {
       folder.Path(),
       {{"  - {type: mass_damping, alpha: 1 1/s}\n", ""}, {", {name: mass_damping.alpha}", ""}});
   const TetMesh mesh = BarMesh({7, 1, 1}, 2);
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const Calibration fit = FitFromStart(CalibrationProblem(study, mesh), &progress);
   ASSERT_TRUE(fit.usable) << fit.message;
   const std::filesystem::path file = folder / "refits.json";

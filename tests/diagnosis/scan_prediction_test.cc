@@ -13,6 +13,7 @@
 #include "prediction/prediction_study_reader.h"
 #include "report/comparison_report.h"
 #include "support/scanned_bar.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -32,7 +33,7 @@ const std::vector<TriMesh>& HeldSurfaces() {
 }
 
 Calibration FitOf(const CalibrationProblem& problem) {
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   return FitFromStart(problem, &progress);
 }
 
@@ -57,7 +58,7 @@ TEST(ScanPrediction, ARefitTakesAwayWhatANuisanceExplains) {
   ASSERT_TRUE(misfit.usable) << misfit.message;
   EXPECT_GT(RootMeanSquare(WhitenedRows(misfit.residual, misfit, 0, true)), 5);
   const AdoptedNuisances all_of_it{misfit.residual, {{0, 1, false}}, 0};
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const EffectRefit refit = Refit({problem, start, misfit, &progress}, nullptr, all_of_it, false);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   EXPECT_LT(refit.calibration.rms, 1);
@@ -260,7 +261,7 @@ TEST_F(CarriedBar, IsFittedFromItsScansAlone) {
        {"order: 2", "order: 1"},
        {"motion: {time_step: 1.5 ms}", "motion: {time_step: 5 ms}"}});
   const PredictionStudy study = ReadPredictionStudy(Config::Load(folder_ / "study.yaml"));
-  Progress progress({.style = ProgressStyle::kSilent});
+  SilentProgress progress;
   const CalibrationRecord record = RunCalibration(study, &progress);
   ASSERT_TRUE(record.usable) << record.message;
   // A shape reconstructed from noisy points, its edges rounded off, with coarse triangles: its

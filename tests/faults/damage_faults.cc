@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kRewritten[] = "nobody, as every run writes it anew";
-constexpr char kMadeAgain[] = "the command, which makes it again without a word";
+constexpr char kRewritten[] = "no check, because every run writes the file again";
+constexpr char kMadeAgain[] = "the command, which makes it again without a message";
 
 bool IsNumbered(const std::string& name) {  // "seed_1", and "0001-de8e15fd", a sweep's case
   return name.starts_with("seed_") ||
@@ -97,7 +97,7 @@ TrialOutcome TryDamage(const std::string& name, bool is_cut, bool is_rewritten, 
   } else if (outcome.failure.empty()) {
     outcome.note = is_rewritten ? kRewritten : kMadeAgain;
   } else {
-    outcome.note = "nobody";
+    outcome.note = "no check";
   }
   return outcome;
 }

@@ -49,6 +49,7 @@ TEST(DiagnosisRecord, IsReadBackAsItWasWritten) {
   RecordedEffect refitted = record.ranking[0];
   refitted.sizes[0].refitted = RecordedInterval{2, 1, INFINITY};
   refitted.refit.emplace().evidence = 300;
+  refitted.refit->unconverged = "the search was ended";
   refitted.refit->errors.without_nuisances = 1;
   refitted.refit->others.push_back({"drag.centre_x", "m", {0.05, -INFINITY, 0.07}});
   record.ranking.push_back(refitted);
@@ -68,6 +69,7 @@ TEST(DiagnosisRecord, IsReadBackAsItWasWritten) {
   EXPECT_FALSE(read.ranking[0].refit.has_value());
   EXPECT_EQ(read.ranking[0].sizes[0].detectable, INFINITY);
   ASSERT_TRUE(read.ranking[1].HasUsableRefit());
+  EXPECT_EQ(read.ranking[1].refit->unconverged, "the search was ended");
   EXPECT_TRUE(read.ranking[1].refit->errors.has_held_out);
   EXPECT_EQ(read.decision.probabilities[1].kind, HypothesisProbability::Kind::kNothing);
   EXPECT_EQ(read.decision.FamilyProbability(EffectFamily::kLossOutside), 0.9);

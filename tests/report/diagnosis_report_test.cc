@@ -80,5 +80,13 @@ TEST(DiagnosisReport, ShowsWhyARefitIsNotUsable) {
   EXPECT_THAT(text, HasSubstr("no step could be taken"));
 }
 
+TEST(DiagnosisReport, ShowsWhyARefitHasNotConverged) {
+  DiagnosisRecord record = MissingDrag();
+  record.ranking[0].refit->unconverged = "the search was ended";
+  const std::string text = DiagnosisReport(record, "runs/bar");
+  EXPECT_THAT(text, HasSubstr("      the search was ended\n"));
+  EXPECT_THAT(text, HasSubstr("2 [1, 3] kg/m^3")) << "the refit counts";
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -114,6 +114,23 @@ TEST(Headline, SaysThatAnEffectWhoseSizeMayBeZeroDoesNotCount) {
               HasSubstr("where they were measured, it falls from 0.500 mm to 0.300 mm"));
 }
 
+// What is said of an effect counts all hypotheses that contain it.
+TEST(Headline, AddsTheProbabilitiesOfAnEffectAloneAndBesideANuisance) {
+  using Kind = HypothesisProbability::Kind;
+  ReportedModel model = Model(8.7e-4, 5.1);
+  model.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+  Believe(&*model.diagnosis, {"drag", "clock"}, 0.7);
+  Believe(&*model.diagnosis, {"drag"}, 0.2);
+  Believe(&*model.diagnosis, {"drag", "viscoelastic_branch"}, 0.07, Kind::kPair);
+  EXPECT_THAT(Headline({model}).back(), HasSubstr("(probability 97 %)"));
+  // Rivals exclude each other.
+  model.diagnosis->verdict = Verdict::kAmbiguous;
+  model.diagnosis->effects = {"drag", "viscoelastic_branch"};
+  Believe(&*model.diagnosis, {"viscoelastic_branch"}, 0.03);
+  EXPECT_THAT(Headline({model}).back(),
+              HasSubstr("drag of the surrounding medium (90 %), or viscoelastic branch (3 %)"));
+}
+
 TEST(Headline, NamesTheRecordingOfTheLargestErrorWhereThereAreSeveral) {
   ReportedModel model = Model(8.7e-4, 5.1);
   Compare(&model);

@@ -45,8 +45,8 @@ TEST(VerdictText, SaysHowMuchTheMissingEffectReducesTheError) {
   record.effects = {"drag"};
   record.reasons = {EffectReducesError{"drag", 300, true, false, 5, 1}};
   EXPECT_EQ(ExplainVerdict(record),
-            "Missing: Drag of the air. With drag, the held-out error goes from 5.0 σ to 1.0 σ; its "
-            "log Bayes factor is 300.");
+            "Missing: Drag of the air. With drag, the held-out error goes from 5.0 σ to 1.0 σ; the "
+            "evidence for it is 300.");
   record.reasons = {EffectReducesError{"drag", 300, false, true, 5, 1}};
   EXPECT_THAT(ExplainVerdict(record),
               HasSubstr("the fitted error, excluding the contributions of mesh, time step"));
@@ -81,6 +81,23 @@ TEST(VerdictText, StatesProbabilitiesOfFamiliesAndMembers) {
                         "any model"));
 }
 
+// A pair that is refuted says nothing against its effects.
+TEST(VerdictText, SaysWhichEffectsAreRefuted) {
+  DiagnosisRecord record = SmallDiagnosis();
+  using Kind = HypothesisProbability::Kind;
+  record.ranking[0].refit.emplace().evidence = 40;
+  HypothesisProbability refuted;
+  refuted.is_refuted = true;
+  refuted.kind = Kind::kPair;
+  refuted.names = {"drag", "gravity"};
+  record.decision.probabilities = {refuted};
+  EXPECT_THAT(ExplainVerdict(record), testing::Not(HasSubstr("refuted")));
+  refuted.kind = Kind::kEffect;
+  refuted.names = {"drag"};
+  record.decision.probabilities.push_back(refuted);
+  EXPECT_THAT(ExplainVerdict(record), HasSubstr("drag is refuted"));
+}
+
 TEST(VerdictText, SaysThatTheResidualIsUnexplained) {
   DiagnosisRecord record = SmallDiagnosis();
   record.verdict = Verdict::kNotInLibrary;
@@ -91,7 +108,7 @@ TEST(VerdictText, SaysThatTheResidualIsUnexplained) {
             "of the frames: check the camera's clock.");
   record.reasons = {EvidenceForAnother{"drag", 300, "gravity", 16}};
   record.next_steps = {AddAndDiagnose{"drag", "gravity"}};
-  EXPECT_THAT(ExplainVerdict(record), HasSubstr("beside it that of gravity is 16"));
+  EXPECT_THAT(ExplainVerdict(record), HasSubstr("beside it the evidence for gravity is 16"));
   EXPECT_THAT(DescribeNextSteps(record), HasSubstr("add drag and diagnose again"));
 }
 

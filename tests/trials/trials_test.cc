@@ -151,6 +151,8 @@ TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
   const TrialOutcome outcome = LoadOutcome(own / "outcome.json");
   ASSERT_TRUE(outcome.simulated);
   EXPECT_GT(outcome.simulated->named + outcome.simulated->open, 0.8);
+  EXPECT_TRUE(std::isfinite(outcome.left_share));  // drag has explained something
+  EXPECT_GT(outcome.model_error, 0);
   ASSERT_FALSE(outcome.ranked.empty());
   // Drag and mass damping are look-alikes: drag is first or second in the ranking.
   EXPECT_TRUE(outcome.ranked[0] == "drag" || outcome.ranked[1] == "drag");

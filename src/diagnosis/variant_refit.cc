@@ -1,0 +1,85 @@
+#include "diagnosis/variant_refit.h"
+
+#include <utility>
+
+#include "diagnosis/thresholds.h"
+
+namespace lacuna {
+namespace {
+
+// Whether a refit has probably ended in a local minimum.
+bool IsLikelyLocalMinimum(const EffectRanking& ranking, const EffectRefit& refit,
+                          const EffectRefit& without, const Score& score) {
+  if (!refit.message.empty() || PredictsWorse(refit.errors, without.errors)) return true;
+  // Where nothing was to be gained, nothing is missed.
+  if (score.evidence < kThresholds.refit.least_evidence) return false;
+  const double noise = ranking.noise.variance * static_cast<double>(ObservedRows(ranking.misfit));
+  return FallsShort(EvidenceOf(without.hypothesis, ranking.noise),
+                    EvidenceOf(refit.hypothesis, ranking.noise), noise, score.evidence);
+}
+
+}  // namespace
+
+double EvidenceOf(const ScoredVariant& variant, const EffectRefit& refit, const NoiseLevel& noise) {
+  if (!refit.message.empty()) return -std::numeric_limits<double>::infinity();
+  return EvidenceOf(refit.hypothesis, noise).log_evidence - variant.selection_penalty;
+}
+
+VariantRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
+                         const EffectRefit& without, bool is_found, const ScoredEffect& effect,
+                         double hopeless_cost) {
+  const RefitThresholds& thresholds = kThresholds.refit;
+  const NoiseLevel& noise = context.ranking.noise;
+  const bool is_far_off = !is_found && RmsOverSigma(without.hypothesis) > kFarFromTruth;
+  int predictions = 0;
+  const auto has_budget = [&] { return predictions < thresholds.most_of_effect; };
+  const auto from = [&](const ScoredVariant& variant, RefitFrom start) {
+    VariantRefit fitted{variant, Refit(context.model, &variant, adopted, is_far_off, start,
+                                       &without, hopeless_cost)};
+    predictions += fitted.refit.calibration.predictions;
+    return fitted;
+  };
+  VariantRefit best = from(effect, RefitFrom::kFirstOrder);
+  const auto keep_better = [&](VariantRefit other) {
+    if (EvidenceOf(other.variant, other.refit, noise) > EvidenceOf(best.variant, best.refit, noise))
+      best = std::move(other);
+  };
+  for (const ScoredVariant& elsewhere : effect.elsewhere) {
+    if (elsewhere.score.evidence < thresholds.variant_share * effect.score.evidence) break;
+    if (!has_budget()) break;
+    keep_better(from(elsewhere, RefitFrom::kFirstOrder));
+  }
+  if (!effect.candidate.IsPilot() && has_budget() &&
+      IsLikelyLocalMinimum(context.ranking, best.refit, without, effect.score))
+    keep_better(from(effect, RefitFrom::kFixedSize));
+  while (has_budget() && !best.refit.unconverged.empty() &&
+         best.refit.calibration.cost <= hopeless_cost) {
+    EffectRefit further = RefitFromValues(context.model, best.variant, adopted,
+                                          best.refit.calibration.parameters, hopeless_cost);
+    predictions += further.calibration.predictions;
+    if (!further.message.empty()) break;
+    const double gained = best.refit.calibration.cost - further.calibration.cost;
+    best.refit = std::move(further);
+    if (!(gained > 0)) break;
+  }
+  return best;
+}
+
+void SetRefit(ScoredVariant variant, const EffectRefit& refit, RankedEffect* effect) {
+  RankedEffect changed;
+  changed.scored = std::move(effect->scored);
+  static_cast<ScoredVariant&>(changed.scored) = std::move(variant);
+  changed.refitted = true;
+  changed.refit_message = refit.message;
+  changed.unconverged = refit.unconverged;
+  changed.errors = refit.errors;
+  if (refit.message.empty()) {
+    changed.values = refit.effect;
+    changed.model = refit.model;
+    changed.sizes = refit.sizes;
+    changed.others = refit.others;
+  }
+  *effect = std::move(changed);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,46 @@
+// The refit of an effect in its best variant: at the place, in the direction or with the time scale
+// from which a fit comes closest to the measurements.
+#ifndef LACUNA_DIAGNOSIS_VARIANT_REFIT_H_
+#define LACUNA_DIAGNOSIS_VARIANT_REFIT_H_
+
+#include <limits>
+
+#include "diagnosis/diagnosis_result.h"
+#include "diagnosis/effect_refit.h"
+
+namespace lacuna {
+
+// What all refits of a diagnosis share. References must outlive it.
+struct RefitContext {
+  const BaselineModel& model;
+  const EffectRanking& ranking;  // of `model`; its list of effects is not used
+};
+
+// A variant of an effect, and the fit of the model with it.
+struct VariantRefit {
+  ScoredVariant variant;
+  EffectRefit refit;
+};
+
+// The log evidence of all frames, up to a constant that all refits share, less the selection
+// penalty of the variant. −∞ if the refit is not usable.
+double EvidenceOf(const ScoredVariant& variant, const EffectRefit& refit, const NoiseLevel& noise);
+
+// Refits an effect from its best variants, and from a fixed size where that seems to end in a local
+// minimum. A fit that ends at its largest number of predictions goes on, within the budget of the
+// effect, if it has come close enough to the measurements for `hopeless_cost`. `without`: the refit
+// with the same nuisances alone. `is_found`: another refit has come down to the noise, which shows
+// that first order leads to the right minimum; a model that is far off is then not fitted afresh
+// with this effect. `hopeless_cost`: as in CalibrationOptions. Throws Interrupted.
+VariantRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
+                         const EffectRefit& without, bool is_found, const ScoredEffect& effect,
+                         double hopeless_cost = std::numeric_limits<double>::infinity());
+
+// Makes this the refit of an effect. All that RankedEffect says of a refit is replaced at once, so
+// that the variant, the sizes, the errors and the values from which the model is fitted again
+// belong to one fit. The evidence, which depends on the noise, is 0 until it is weighed.
+void SetRefit(ScoredVariant variant, const EffectRefit& refit, RankedEffect* effect);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_DIAGNOSIS_VARIANT_REFIT_H_

@@ -1,0 +1,155 @@
+// What becomes of the refits of a diagnosis once there is another fit of the same effect.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/calibration_fits.h"
+#include "diagnosis/refits.h"
+#include "effects/catalogue.h"
+#include "support/held_bar.h"
+#include "support/silent_progress.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+constexpr NoiseLevel kWhite{0, 1};
+
+// A bar that was held aside and released, with few elements.
+class RefitsOfABar : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    WriteBarRecording(folder_.Path(), FilmHeldBar({}));
+    study_ = ReadBarStudy(folder_.Path());
+    problem_.emplace(study_, BarMesh({4, 1, 1}, 1));
+    fit_ = FitFromStart(*problem_, &progress_);
+    ASSERT_FALSE(fit_.estimates.empty()) << fit_.message;
+    ranking_.misfit = problem_->Linearise(fit_.parameters, true);
+    ASSERT_TRUE(ranking_.misfit.usable) << ranking_.misfit.message;
+    ranking_.adopted = {Eigen::MatrixXd(ranking_.misfit.residual.size(), 0), {}, 0};
+    ranking_.noise = kWhite;
+  }
+
+  BaselineModel Model() { return {*problem_, fit_.parameters, ranking_.misfit, &progress_}; }
+
+  ScoredEffect Scored(const std::string& type, const std::string& variant,
+                      const std::map<std::string, double>& values) const {
+    ScoredEffect effect;
+    effect.candidate = {type, variant, MakeEffect(type, values), {0}};
+    effect.score.size = Eigen::VectorXd::Constant(1, 1);
+    effect.expected_values = fit_.parameters;
+    return effect;
+  }
+  ScoredEffect Drag(const std::string& variant) const {
+    return Scored("drag", variant, {{"coefficient", 1}});
+  }
+  ScoredEffect Support(const std::string& variant) const {
+    return Scored("elastic_support", variant, {{"modulus", 0}});
+  }
+
+  // The model without an effect, and effects that have not been refitted.
+  RefittedRanking RankedWith(const BaselineModel& model, const std::vector<ScoredEffect>& effects) {
+    RefittedRanking ranked;
+    ranked.baseline = Refit(model, nullptr, ranking_.adopted, false);
+    EXPECT_TRUE(ranked.baseline.message.empty()) << ranked.baseline.message;
+    for (const ScoredEffect& effect : effects) ranked.effects.emplace_back().scored = effect;
+    ranked.refits.resize(effects.size());
+    return ranked;
+  }
+
+  EffectRefit RefitDrag(const BaselineModel& model) {
+    const ScoredEffect drag = Drag("");
+    EffectRefit refit = Refit(model, &drag, ranking_.adopted, false);
+    EXPECT_TRUE(refit.message.empty()) << refit.message;
+    return refit;
+  }
+
+  const TemporaryFolder folder_;
+  PredictionStudy study_;
+  std::optional<CalibrationProblem> problem_;
+  Calibration fit_;
+  EffectRanking ranking_;
+  SilentProgress progress_;
+};
+
+// A column that pushes the model by some standard deviations of a parameter, which gives way.
+TEST_F(RefitsOfABar, AreDescribedAsTheyAreBesideTheColumnsOfAnotherMotion) {
+  const BaselineModel model = Model();
+  RefittedRanking ranked = RankedWith(model, {Drag("")});
+  ranked.Take(0, {Drag(""), RefitDrag(model)});
+  const EffectRefit before = ranked.refits[0];
+  const ParameterEstimate& stiffness = before.calibration.estimates[0];
+  const double push = 2 * (stiffness.high - stiffness.value);
+  EffectRanking along;
+  along.adopted = {push * before.hypothesis.misfit.jacobian.col(0), {{1, 1e-3, false}}, 1};
+  LookAlong({model, ranking_}, "drag", along, &ranked);
+  const EffectRefit& after = ranked.refits[0];
+  const RankedEffect& drag = ranked.effects[0];
+  ASSERT_TRUE(drag.HasUsableRefit()) << drag.refit_message;
+  EXPECT_LT(drag.model[0], before.model[0] - 0.5 * push);
+  EXPECT_GT(drag.model[0], before.model[0] - 2 * push);
+  EXPECT_NEAR(after.values_at_fit[0], drag.model[0], 0.5 * push);
+  EXPECT_EQ(drag.values, after.effect);
+  EXPECT_EQ(drag.errors.without_nuisances, after.errors.without_nuisances);
+  EXPECT_EQ(drag.sizes.front().value, after.calibration.parameters[drag.model.size()]);
+}
+
+TEST_F(RefitsOfABar, GiveWayToABetterOneAsAWhole) {
+  const BaselineModel model = Model();
+  RefittedRanking ranked = RankedWith(model, {Drag("")});
+  const EffectRefit good = RefitDrag(model);
+  EffectRefit poor = good;
+  poor.hypothesis.misfit.residual *= 2;
+  poor.sizes.front().value = 77;
+  poor.unconverged = "it was ended";
+  ranked.Take(0, {Drag(""), poor});
+  EXPECT_EQ(ranked.effects[0].sizes.front().value, 77);
+  RefitAgain({model, ranking_}, 0, good.values_at_fit, kWhite, &ranked);
+  const RankedEffect& drag = ranked.effects[0];
+  EXPECT_TRUE(drag.unconverged.empty()) << drag.unconverged;
+  EXPECT_EQ(drag.sizes.front().value, ranked.refits[0].sizes.front().value);
+  EXPECT_NE(drag.sizes.front().value, 77);
+  EXPECT_GT(EvidenceOf(ranked.refits[0], kWhite).all, EvidenceOf(poor, kWhite).all);
+  // A worse one changes nothing.
+  EXPECT_FALSE(ranked.TakeIfBetter(0, {Drag(""), poor}, kWhite));
+  EXPECT_NE(drag.sizes.front().value, 77);
+}
+
+// Where the whole motion has led to no usable fit, the early part of it may. An effect that no
+// longer may be refitted stays as it was ranked.
+TEST_F(RefitsOfABar, AreTriedAgainFromTheEarlyPartOfTheMotion) {
+  const BaselineModel model = Model();
+  RefittedRanking ranked = RankedWith(model, {Drag("whole"), Support("whole")});
+  EffectRefit failed;
+  failed.message = "the simulation has stopped";
+  ranked.Take(0, {Drag("whole"), failed});
+  ranked.count = ranked.limit = 1;
+  std::vector<ScoredEffect> early{Drag("early"), Support("early")};
+  for (ScoredEffect& effect : early) effect.score.evidence = 10;
+  RefitAsRankedEarly({model, ranking_}, early, 2, &ranked);
+  EXPECT_TRUE(ranked.IsUsable(0)) << ranked.effects[0].refit_message;
+  EXPECT_EQ(ranked.effects[0].scored.candidate.variant, "early");
+  EXPECT_EQ(ranked.effects[0].scored.score.evidence, 0) << "the score is that of all frames";
+  EXPECT_FALSE(ranked.effects[1].refitted);
+  EXPECT_EQ(ranked.effects[1].scored.candidate.variant, "whole");
+  EXPECT_EQ(ranked.count, 1);
+}
+
+TEST_F(RefitsOfABar, PayForTheVariantsThatTheyCannotReach) {
+  const BaselineModel model = Model();
+  RefittedRanking ranked = RankedWith(model, {Drag("only one"), Drag("one of seven")});
+  const EffectRefit refit = RefitDrag(model);
+  ScoredVariant of_seven = Drag("one of seven");
+  of_seven.selection_penalty = std::log(7);
+  ranked.Take(0, {Drag("only one"), refit});
+  ranked.Take(1, {of_seven, refit});
+  WeighRefits({model, ranking_}, &ranked);
+  EXPECT_NEAR(ranked.effects[0].evidence - ranked.effects[1].evidence, std::log(7), 1e-9);
+}
+
+}  // namespace
+}  // namespace lacuna
