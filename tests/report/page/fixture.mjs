@@ -269,7 +269,7 @@ function decision(isSecond) {
   const power = (truth, named, rest) => ({ truth, named, wrong_member: rest, wrong: 0, open: 1 - named - rest, unknown: 0, most_wrong: rest > 0 ? 'stiffness_damping' : '' });
   return {
     probabilities: isSecond ? [probability('nothing', [], 'other', 0.78), probability('nuisance', ['grip_compliance'], 'other', 0.21), probability('pair', ['drag', 'swelling'], 'other', 0.01), probability('effect', ['strain_stiffening'], 'elasticity', 0, true)]
-      : [probability('effect', ['viscoelastic_branch'], 'loss_inside', 0.962), probability('effect', ['elastoplastic_branch'], 'loss_inside', 0.031), probability('effect', ['attached_mass'], 'mass_distribution', 0.007), probability('effect', ['strain_stiffening'], 'elasticity', 0, true)],
+      : [probability('effect', ['viscoelastic_branch'], 'loss_inside', 0.722), probability('effect', ['viscoelastic_branch', 'clock'], 'loss_inside', 0.24), probability('effect', ['elastoplastic_branch'], 'loss_inside', 0.031), probability('effect', ['attached_mass'], 'mass_distribution', 0.007), probability('effect', ['strain_stiffening'], 'elasticity', 0, true)],
     adequacy: { beside: isSecond ? [] : ['viscoelastic_branch'], p_unknown_force: 0.2, p_further: 0.1, p_variance: 0.002, p: 0.002, is_adequate: false, further: 'swelling', further_evidence: 1, rms_over_sigma: 1.03, left_share: 0.006, is_tolerated: true },
     power: [power([], 1, 0), power(['viscoelastic_branch'], 0.97, 0.02), power(['elastoplastic_branch'], 0.71, 0.2)],
     separations: [{ first: 'viscoelastic_branch', second: 'elastoplastic_branch', lambda: 380 }, { first: 'viscoelastic_branch', second: 'attached_mass', lambda: 4100 },

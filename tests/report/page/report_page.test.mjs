@@ -376,6 +376,8 @@ test('every part is there when its data is', async () => {
   const text = await full.page.locator('main').textContent();
   for (const part of ['Error over time', 'Position of', 'Force on jaw', 'Load against displacement, x', 'y, over time', 'Torque on jaw', 'Torque against rotation, x', 'measured, held out', 'Against speed', 'Against distance from the grip', 'Torque', 'Power', 'Effects that were tried', 'that each refitted effect removes', '18715.3', 'Which pairs these recordings can separate',
                       'What such recordings would have said', 'The next recording', 'force that holds', 'The recordings disagree', 'traded off with young_modulus', 'in the information about a parameter', '75 %', 'metric: probability', 'Commands that reproduce it', 'noise of the measurement']) assert.ok(text.includes(part), part);
+  const physics = await full.page.locator('#physics').textContent();
+  assert.ok(physics.includes('96 %') && !physics.includes('72 %'), 'the probability of an effect counts it with and without nuisances');
   assert.ok(!text.includes('Load against displacement, y'), 'a force over a motion that the grip does not make');
   await full.close();
   const study = await open(fixture('study'));

@@ -24,8 +24,15 @@ function probabilityCell(probability, isRefuted) {
   return h('span', { class: 'mini-bar-box' }, h('span', { class: 'mini-bar', style: { width: `${Math.round(56 * probability)}px` } }), isRefuted ? 'refuted' : posterior(probability));
 }
 
+// The probability that this effect alone is missing, with or without nuisances beside it.
+export function beliefIn(type, decision) {
+  const withEffect = (decision?.probabilities ?? []).filter((one) => one.kind === 'effect' && one.names[0] === type);
+  if (withEffect.length === 0) return undefined;
+  return { probability: withEffect.reduce((sum, one) => sum + one.probability, 0), is_refuted: withEffect.every((one) => one.is_refuted) };
+}
+
 function candidates(diagnosis) {
-  const byName = (type) => diagnosis.decision?.probabilities?.find((one) => one.kind === 'effect' && one.names.length === 1 && one.names[0] === type);
+  const byName = (type) => beliefIn(type, diagnosis.decision);
   const before = diagnosis.held_out_rms_over_sigma;
   const shown = (diagnosis.ranking ?? []).filter((effect) => effect.evidence > 0 || isUsable(effect) || byName(effect.effect)?.probability > 0);
   const rows = shown.map((effect) => {

@@ -6,22 +6,29 @@ import { FAMILIES, VERDICTS, namesOf } from './text.js';
 const WORTH_NAMING = 0.01;
 const IN_VAIN = 'One effect is named, but does not count';
 
-// Hypotheses grouped by family, the most probable one first.
+// Hypotheses grouped by family, the most probable one first. An effect counts with and without
+// nuisances beside it.
 export function probabilityGroups(decision) {
   const groups = [];
   for (const one of decision?.probabilities ?? []) {
     const isMember = one.kind === 'effect' && one.family !== 'other';
-    const key = isMember ? one.family : `${one.kind}:${namesOf(one.names)}`;
+    const name = namesOf(one.kind === 'effect' ? one.names.slice(0, 1) : one.names);
+    const key = isMember ? one.family : `${one.kind}:${name}`;
     let group = groups.find((candidate) => candidate.key === key);
     if (!group) {
-      group = { key, title: isMember ? FAMILIES[one.family] ?? one.family : one.kind === 'nothing' ? 'nothing is missing' : namesOf(one.names),
+      group = { key, title: isMember ? FAMILIES[one.family] ?? one.family : one.kind === 'nothing' ? 'nothing is missing' : name,
                 kind: one.kind, probability: 0, members: [] };
       groups.push(group);
     }
     group.probability += one.probability;
-    if (isMember) group.members.push({ name: namesOf(one.names), probability: one.probability, isRefuted: one.is_refuted });
+    if (!isMember) continue;
+    const member = group.members.find((candidate) => candidate.name === name);
+    if (member) member.probability += one.probability;
+    else group.members.push({ name, probability: one.probability });
   }
-  return groups.sort((a, b) => b.probability - a.probability);
+  const byProbability = (a, b) => b.probability - a.probability;
+  for (const group of groups) group.members.sort(byProbability);
+  return groups.sort(byProbability);
 }
 
 function probabilityRow(name, probability, isMember) {
