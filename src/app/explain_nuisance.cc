@@ -33,8 +33,8 @@ std::string InADiagnosis(const NuisanceCard& card) {
     text += " It differs from frame to frame, so it predicts nothing for held-out frames.";
   if (card.needs_few_frames)
     text += fmt::format(
-        " It is left out of recordings with more than {} frames, which the diagnosis says; `every` "
-        "thins out the frames.",
+        " It is left out of recordings with more than {} frames; the diagnosis then says so. "
+        "`every` in the experiment reduces the number of frames.",
         kThresholds.nuisances.most_single_frames);
   if (card.outgrows_first_order)
     text +=

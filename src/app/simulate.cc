@@ -107,12 +107,23 @@ std::filesystem::path OutputFolder(const Arguments& arguments, const std::string
   return arguments.output.empty() ? "results/" + name + "_simulation" : arguments.output;
 }
 
-// Throws InputError where the recording would replace one that nobody has simulated.
-void RefuseMeasuredRecording(const std::filesystem::path& folder) {
-  if (!std::filesystem::exists(folder / "recording.yaml") || IsSimulatedRecording(folder)) return;
-  throw InputError({(folder / "recording.yaml").string()},
-                   "was not written by a simulation and would be replaced; choose another folder "
-                   "for --recording");
+// Throws InputError where the recording would be written among files that may be measured.
+void RefuseMeasuredFiles(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder) || IsSimulatedRecording(folder)) return;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (!IsTemporaryFile(entry.path()))
+      throw InputError({folder.string()},
+                       fmt::format("contains {}, but no recording.yaml that begins with \"# {}\"; "
+                                   "choose another folder for --recording",
+                                   entry.path().filename().string(), kSimulated));
+}
+
+// Marks a folder that has been checked before anything else is written into it, so that the
+// command can be repeated after an interruption. A simulated recording that is there is kept until
+// the new one is written.
+void ReserveFolder(const std::filesystem::path& folder) {
+  MakeFolder(folder);
+  if (!IsSimulatedRecording(folder)) MarkAsSimulated(folder);
 }
 
 // Throws InputError where the recording would be written among files that the experiment reads.
@@ -153,8 +164,10 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
     if (arguments.recording.empty()) break;
     const std::filesystem::path folder = own_folder(arguments.recording, item.name);
     RefuseFolderOfInputs(folder, study);
-    RefuseMeasuredRecording(folder);
+    RefuseMeasuredFiles(folder);
   }
+  for (const PredictedRecording& item : study.recordings)
+    if (!arguments.recording.empty()) ReserveFolder(own_folder(arguments.recording, item.name));
   const TetMesh mesh = MakeReferenceBody(study).mesh;
   const auto body = std::make_shared<const Body>(MakeBody(mesh, study.density));
   for (size_t r = 0; r < study.recordings.size(); ++r) {
@@ -170,11 +183,12 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
     SayMotion(item.name, mesh, trajectory, folder);
     if (arguments.recording.empty()) continue;
     const std::filesystem::path written = own_folder(arguments.recording, item.name);
-    MakeFolder(written);
+    MarkAsSimulated(written);
     WriteTetMesh(written / "object.msh", mesh);
     MarkerRecording recording = AsRecording(item, played, study.noise, r + 1);
     recording.reference = written / "object.msh";
-    recording.comment = fmt::format("{} from {}.", kSimulated, study.file.filename().string());
+    recording.comment =
+        fmt::format("{}\nPlayed from {}.", kSimulated, study.file.filename().string());
     WriteMarkerRecording(written, recording);
     fmt::print("The recording was written to {}\n", written.string());
   }
@@ -188,9 +202,11 @@ int Simulate(const Arguments& arguments) {
   if (!arguments.recording.empty() && !scene.scanner)
     throw InputError(SourcePosition{arguments.scene}, "has no `scanner`, which --recording needs");
   const std::filesystem::path output = OutputFolder(arguments, scene.name);
-  if (!arguments.recording.empty()) RefuseMeasuredRecording(arguments.recording);
+  if (!arguments.recording.empty()) {
+    RefuseMeasuredFiles(arguments.recording);
+    ReserveFolder(arguments.recording);
+  }
   MakeFolder(output);
-  if (!arguments.recording.empty()) MakeFolder(arguments.recording);
   Progress progress;
   const SceneMotion motion = SimulateScene(scene, &progress);
   if (!motion.IsUsable()) return SayEnded(arguments, motion.message);
@@ -200,6 +216,7 @@ int Simulate(const Arguments& arguments) {
   WriteLoads(motion, output);
   SayMotion(scene.name, motion.body->mesh, trajectory, output);
   if (!arguments.recording.empty()) {
+    MarkAsSimulated(arguments.recording);
     WriteSceneRecording(scene, motion, arguments.recording);
     fmt::print("The recording was written to {}\n", arguments.recording);
   }

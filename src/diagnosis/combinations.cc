@@ -64,8 +64,8 @@ Combination Combine(const DecisionInput& input, Kind kind, const std::string& fi
   Combination both;
   both.hypothesis.kind = kind;
   both.hypothesis.names = {first, second};
-  for (const std::string& adopted : input.adopted)
-    if (!both.hypothesis.Contains(adopted)) both.hypothesis.names.push_back(adopted);
+  both.hypothesis.names.insert(both.hypothesis.names.end(), input.adopted.begin(),
+                               input.adopted.end());
   both.hypothesis.evidence = evidence;
   both.tested = std::move(tested);
   return both;

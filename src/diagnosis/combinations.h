@@ -9,7 +9,8 @@
 // probability that there is one. Combinations that gain nothing are left out, unless they were
 // fitted.
 //
-// e(B | A) is that of a fit of both, if there is one, else of first order. All functions are pure.
+// e(B | A) is that of a fit of both, if there is one, else of first order; an effect with a
+// nuisance is never fitted. All functions are pure.
 #ifndef LACUNA_DIAGNOSIS_COMBINATIONS_H_
 #define LACUNA_DIAGNOSIS_COMBINATIONS_H_
 

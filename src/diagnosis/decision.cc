@@ -104,7 +104,7 @@ std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
       one.evidence += NaturalValueOf(input, one.names.front());
     } else if (one.kind == Kind::kNuisance) {
       if (const std::optional<double> refitted = RefittedEvidence(input, one.names.front()))
-        one.evidence = *refitted - nuisances;
+        one.evidence = *refitted - nuisances - input.baseline.model_error;
     }
   }
   CompareWithAdopted(input, effects, &hypotheses);
@@ -197,9 +197,8 @@ std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>
     one.kind = named.kind == HypothesisKind::kEffect ? Kind::kEffect : Kind::kNuisance;
     one.names = {named.name};
     one.evidence = named.evidence;
-    if (one.kind != Kind::kEffect) continue;
     one.evidence -= model_error;
-    one.family = FamilyOf(families, named.name);
+    if (one.kind == Kind::kEffect) one.family = FamilyOf(families, named.name);
   }
   return hypotheses;
 }
@@ -216,12 +215,18 @@ Decision Decide(const DecisionInput& input) {
       CombinationsOf(input, first_order, record.probabilities);
   for (const Combination& both : combinations) record.probabilities.push_back(both.hypothesis);
   SetPosterior(&record.probabilities);
-  const HypothesisProbability& best = record.probabilities.front();
+  const std::vector<HypothesisProbability> distinguished = record.probabilities;
+  MergeRepeated(&record.probabilities);
+  const HypothesisProbability& first = record.probabilities.front();
+  // Of what has been merged, the most probable part is tested.
+  const HypothesisProbability& best =
+      *std::find_if(distinguished.begin(), distinguished.end(),
+                    [&](const auto& one) { return IsRepeated(one, first); });
   TestedSpace tested = TestedSpaceOf(input, first_order, best);
   for (const Combination& both : combinations)
     if (both.hypothesis.names == best.names && both.hypothesis.evidence == best.evidence)
       tested = both.tested;
-  std::vector<std::string> beside = best.names.empty() ? input.adopted : best.names;
+  std::vector<std::string> beside = first.names.empty() ? input.adopted : first.names;
   if (best.kind == Kind::kEffect || best.kind == Kind::kPair)
     for (const std::string& nuisance : TakeNuisancesBeside(&tested))
       if (std::count(beside.begin(), beside.end(), nuisance) == 0) beside.push_back(nuisance);
@@ -232,13 +237,9 @@ Decision Decide(const DecisionInput& input) {
 
   const Naming naming = NameFrom(record.probabilities);
   decision.names = naming.names;
-  const auto is_nuisance = [&](const std::string& name) {
-    return IsNuisance(record.probabilities, name);
-  };
-  const bool is_measurement = std::all_of(naming.names.begin(), naming.names.end(), is_nuisance);
-  // Nuisances beside an effect are mentioned by the test of adequacy.
-  if (naming.level == Naming::Level::kCommon && !is_measurement)
-    std::erase_if(decision.names, is_nuisance);
+  const bool is_measurement = std::all_of(naming.kept.begin(), naming.kept.end(), [&](size_t k) {
+    return record.probabilities[k].kind == Kind::kNuisance;
+  });
   if (!record.adequacy.is_adequate && !record.adequacy.is_tolerated) {
     decision.verdict = Verdict::kNotInLibrary;
   } else if (naming.level == Naming::Level::kNothing) {

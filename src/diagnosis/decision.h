@@ -2,11 +2,12 @@
 //
 // 1. The posterior over {nothing, each effect, each nuisance} follows from the Bayes factors
 //    (decision_rules.h): of a refit where there is one, else to first order.
-// 2. Combinations are added (combinations.h): pairs of effects, and effects with a nuisance beside
-//    them, fitted or to first order.
+// 2. Combinations are added (combinations.h): pairs of effects, fitted or to first order, and
+//    effects with a nuisance beside them, to first order.
 // 3. The most probable hypothesis is tested against its own residual (adequacy.h). If it leaves
 //    more than noise, something unknown is left.
-// 4. What the hypotheses that reach kStatedProbability have in common is stated, else their set.
+// 4. The effects that the hypotheses that reach kStatedProbability have in common are stated, else
+//    their set.
 //
 // Pure: the result depends on the input alone.
 #ifndef LACUNA_DIAGNOSIS_DECISION_H_

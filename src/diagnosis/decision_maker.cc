@@ -67,13 +67,9 @@ std::optional<WeighedPair> Weigh(const FittedPair& pair, const RefittedRanking& 
                       EvidenceOfNaturalValue(alone.scored.candidate, alone.sizes);
   if (!std::isfinite(gain)) return std::nullopt;
   const std::string& second = pair.second.scored.candidate.type;
-  const std::optional<size_t> other = ranked.FindUsable(second);
-  const bool predicts = Predicts(pair.both, ranked.baseline, noise) &&
-                        Predicts(pair.both, of_first, noise) &&
-                        (!other || Predicts(pair.both, ranked.refits[*other], noise));
   return WeighedPair{pair.first, second, gain,
                      SpaceAlong(pair.both.hypothesis, ranked, ranking, {pair.first, second}, noise),
-                     predicts};
+                     PairPredicts(pair, ranked, noise)};
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 namespace lacuna {
 namespace {
@@ -23,6 +25,24 @@ double LogPrior(Kind kind) {
   return 0;
 }
 
+// What a hypothesis says is missing: its effects or, where it has none, its nuisances. Rivals that
+// only share the nuisances beside an effect have nothing in common.
+std::vector<std::string> WithoutNuisancesBeside(const std::vector<HypothesisProbability>& posterior,
+                                                const HypothesisProbability& one) {
+  std::vector<std::string> names = one.names;
+  if (one.kind != Kind::kNuisance)
+    std::erase_if(names, [&](const std::string& name) { return IsNuisance(posterior, name); });
+  return names;
+}
+
+// Every name once, in the order in which they first appear.
+std::vector<std::string> DistinctNames(const std::vector<std::string>& names) {
+  std::vector<std::string> distinct;
+  for (const std::string& name : names)
+    if (std::count(distinct.begin(), distinct.end(), name) == 0) distinct.push_back(name);
+  return distinct;
+}
+
 }  // namespace
 
 void SetPosterior(std::vector<HypothesisProbability>* hypotheses) {
@@ -39,6 +59,33 @@ void SetPosterior(std::vector<HypothesisProbability>* hypotheses) {
   for (HypothesisProbability& one : *hypotheses) one.probability /= sum;
   std::stable_sort(hypotheses->begin(), hypotheses->end(),
                    [&](const auto& a, const auto& b) { return weight(a) > weight(b); });
+}
+
+bool IsRepeated(const HypothesisProbability& a, const HypothesisProbability& b) {
+  const auto contains_all = [](const HypothesisProbability& one, const auto& names) {
+    return std::all_of(names.begin(), names.end(),
+                       [&](const std::string& name) { return one.Contains(name); });
+  };
+  return a.kind == b.kind && contains_all(a, b.names) && contains_all(b, a.names);
+}
+
+void MergeRepeated(std::vector<HypothesisProbability>* posterior) {
+  std::vector<HypothesisProbability> merged;
+  for (HypothesisProbability& one : *posterior) {
+    const auto same = std::find_if(merged.begin(), merged.end(),
+                                   [&](const auto& other) { return IsRepeated(one, other); });
+    if (same == merged.end()) {
+      one.names = DistinctNames(one.names);
+      merged.push_back(std::move(one));
+    } else if (one.probability > 0) {
+      // Hypotheses of one kind have one prior, so that their Bayes factors add up likewise.
+      same->evidence += std::log1p(one.probability / same->probability);
+      same->probability += one.probability;
+    }
+  }
+  std::stable_sort(merged.begin(), merged.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  *posterior = std::move(merged);
 }
 
 bool IsNuisance(const std::vector<HypothesisProbability>& posterior, const std::string& name) {
@@ -60,21 +107,21 @@ Naming NameFrom(const std::vector<HypothesisProbability>& posterior) {
   };
   if (!holds([](const auto& one) { return one.kind != Kind::kNothing; })) return naming;
   const HypothesisProbability& best = posterior.front();
-  const auto is_nuisance = [&](const std::string& name) { return IsNuisance(posterior, name); };
-  for (const std::string& name : best.names)
-    if (holds([&](const auto& one) { return one.Contains(name); })) naming.names.push_back(name);
-  // Rival effects that only share the nuisances of every model have nothing in common.
-  const bool share_nuisances = holds([](const auto& one) { return one.kind != Kind::kNuisance; }) &&
-                               std::all_of(naming.names.begin(), naming.names.end(), is_nuisance);
-  if (!naming.names.empty() && !share_nuisances) {
+  const std::vector<std::string> named = WithoutNuisancesBeside(posterior, best);
+  std::copy_if(named.begin(), named.end(), std::back_inserter(naming.names),
+               [&](const std::string& name) {
+                 return holds([&](const auto& one) {
+                   const std::vector<std::string> other = WithoutNuisancesBeside(posterior, one);
+                   return std::count(other.begin(), other.end(), name) > 0;
+                 });
+               });
+  if (!naming.names.empty()) {
     naming.level = Naming::Level::kCommon;
     return naming;
   }
-  naming.names.clear();
   for (const size_t k : naming.kept)
-    for (const std::string& name : posterior[k].names)
-      if (std::count(naming.names.begin(), naming.names.end(), name) == 0 &&
-          (posterior[k].kind == Kind::kNuisance || !is_nuisance(name)))
+    for (const std::string& name : WithoutNuisancesBeside(posterior, posterior[k]))
+      if (std::count(naming.names.begin(), naming.names.end(), name) == 0)
         naming.names.push_back(name);
   const bool is_family = best.kind == Kind::kEffect && best.family != EffectFamily::kOther &&
                          holds([&](const auto& one) {

@@ -3,8 +3,9 @@
 //
 // The posterior probability of a hypothesis is its prior probability times its Bayes factor
 // against the model as it is, normalised. The smallest set of hypotheses that reaches
-// kStatedProbability is kept. What all of them contain is stated as missing; where they have
-// nothing in common, the set itself is stated.
+// kStatedProbability is kept. What all of them contain is stated as missing, but for the nuisances
+// that some of them have beside an effect; where they have nothing in common, the set itself is
+// stated.
 #ifndef LACUNA_DIAGNOSIS_DECISION_RULES_H_
 #define LACUNA_DIAGNOSIS_DECISION_RULES_H_
 
@@ -34,6 +35,14 @@ inline constexpr double kToleratedModelError = 0.01;
 // nuisance beside it is of the kind "effect", and its evidence contains the prior of the nuisance.
 void SetPosterior(std::vector<HypothesisProbability>* hypotheses);
 
+// Whether two hypotheses are of one kind and have the same names. There may be several of that
+// sort, because nuisances of one name exist once for each recording or grip.
+bool IsRepeated(const HypothesisProbability& a, const HypothesisProbability& b);
+
+// Merges the repeated hypotheses of a sorted posterior: adds their probabilities and their Bayes
+// factors, and leaves every name in them once.
+void MergeRepeated(std::vector<HypothesisProbability>* posterior);
+
 // Whether `name` is a nuisance of one of the hypotheses.
 bool IsNuisance(const std::vector<HypothesisProbability>& posterior, const std::string& name);
 
@@ -41,7 +50,7 @@ bool IsNuisance(const std::vector<HypothesisProbability>& posterior, const std::
 struct Naming {
   enum class Level {
     kNothing,  // "nothing is missing" is among the hypotheses that must be kept
-    kCommon,   // all hypotheses that are kept contain these effects or nuisances
+    kCommon,   // all hypotheses that are kept contain these effects, or all are these nuisances
     kFamily,   // several effects of one family, of which one is missing
     kSet,      // several hypotheses of different families
   };

@@ -4,10 +4,11 @@
 //    first-order evidence along the fitted trajectory (effect_ranking.h).
 // 2. The best effects are added to the model, one at a time, and fitted with it (refits.h). What
 //    counts is the evidence of all frames, including the held-out ones, with a noise that is at
-//    least as large and as correlated as the residual of the best refit.
+//    least as large and as correlated as the residual of the best-fitting model: the one with the
+//    smallest residual among the model as it is and all refits, with one effect or two, that the
+//    held-out frames do not refute.
 // 3. The decision weighs all hypotheses, tests whether the most probable one leaves more than
-// noise,
-//    and simulates what these recordings would have shown (decision.h, recording_power.h).
+//    noise, and simulates what these recordings would have shown (decision.h, recording_power.h).
 // 4. The verdict states the result in terms to act upon (verdict.h).
 // docs/diagnosis.md explains the method and its limits.
 #ifndef LACUNA_DIAGNOSIS_DIAGNOSIS_H_

@@ -64,7 +64,8 @@ struct Diagnosis : Conclusion {
   DecisionRecord decision;
   AgreementRecord agreement;  // of the recordings about the parameters of the fitted model
   // Over all frames, with the adopted nuisances at their best: of the baseline model, and of the
-  // best-fitting one, i.e. the one with the smallest residual of it and of all refits.
+  // best-fitting one, i.e. the one with the smallest residual of it and of all refits with
+  // one effect or two that are not refuted.
   double baseline_rms_over_sigma = 0, best_rms_over_sigma = 0;
 };
 

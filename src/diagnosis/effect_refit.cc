@@ -154,6 +154,20 @@ std::string StageOf(const ScoredVariant* effect) {
   return effect != nullptr ? "refit " + effect->candidate.type : "refit";
 }
 
+// Sets what depends on the nuisances beside a refit, whose hypothesis is that at `values`.
+void FinishBeside(const ExtendedProblem& extended, const BaselineModel& baseline,
+                  const AdoptedNuisances& adopted, const Eigen::VectorXd& values,
+                  EffectRefit* refit) {
+  const LinearisedMisfit& misfit = refit->hypothesis.misfit;
+  refit->message = misfit.message;
+  if (!misfit.usable) return;
+  refit->amounts = extended.AmountsAt(misfit);
+  const Eigen::VectorXd residual = misfit.residual + adopted.columns * refit->amounts;
+  const Eigen::VectorXd white = WhitenedRows(residual, baseline.misfit, 0, false);
+  refit->errors.without_nuisances = HeldOutInNoise(white, baseline.misfit);
+  SettleRefit(extended.problem(), adopted, baseline, {values, std::move(refit->hypothesis)}, refit);
+}
+
 // What a fit says of its effect, of the fitted frames and of all frames.
 EffectRefit FinishedRefit(ExtendedFit fit, const ExtendedProblem& extended,
                           const BaselineModel& baseline, const ScoredVariant* effect,
@@ -182,15 +196,7 @@ EffectRefit FinishedRefit(ExtendedFit fit, const ExtendedProblem& extended,
     refit.sizes = extended.SizesIn(calibration);
     refit.others = extended.OthersIn(calibration);
   }
-  refit.message = refit.hypothesis.misfit.message;
-  if (!refit.hypothesis.misfit.usable) return refit;
-  refit.amounts = extended.AmountsAt(refit.hypothesis.misfit);
-  const Eigen::VectorXd residual =
-      refit.hypothesis.misfit.residual + adopted.columns * refit.amounts;
-  const Eigen::VectorXd white = WhitenedRows(residual, misfit, 0, false);
-  refit.errors.without_nuisances = HeldOutInNoise(white, misfit);
-  SettleRefit(with, adopted, baseline, {calibration.parameters, std::move(refit.hypothesis)},
-              &refit);
+  FinishBeside(extended, baseline, adopted, calibration.parameters, &refit);
   return refit;
 }
 
@@ -214,12 +220,13 @@ double PredictiveGain(const EffectRefit& with, const EffectRefit& without,
          0.5 * squares / (noise.variance * PersistenceOf(noise, with.hypothesis.misfit));
 }
 
-bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise) {
+bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise,
+              int tests) {
   // Of recordings in which the effect is missing, one in so many at most refutes it. More: wrong
   // effects that fail later in the motion stay possible.
   constexpr double kOneIn = 100;
   return !with.unconverged.empty() || !without.errors.has_held_out ||
-         PredictiveGain(with, without, noise) >= -std::log(kOneIn);
+         PredictiveGain(with, without, noise) >= -std::log(kOneIn * tests);
 }
 
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
@@ -239,10 +246,10 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
   return FinishedRefit(std::move(fit), extended, baseline, effect, adopted);
 }
 
-EffectRefit RefitFromValues(const BaselineModel& baseline, const ScoredVariant& effect,
+EffectRefit RefitFromValues(const BaselineModel& baseline, const ScoredVariant* effect,
                             const AdoptedNuisances& adopted, const Eigen::VectorXd& values,
                             double hopeless_cost) {
-  const ExtendedProblem extended(baseline, &effect, adopted);
+  const ExtendedProblem extended(baseline, effect, adopted);
   const std::vector<CalibratedParameter>& parameters = extended.problem().parameters();
   CHECK_EQ(values.size(), static_cast<Eigen::Index>(parameters.size()));
   Eigen::VectorXd start = values;
@@ -251,8 +258,35 @@ EffectRefit RefitFromValues(const BaselineModel& baseline, const ScoredVariant& 
     value = std::clamp(value, parameters[k].min, parameters[k].max);
   }
   ExtendedFit fit =
-      extended.CalibrateFrom(start, StageOf(&effect), hopeless_cost, baseline.progress);
-  return FinishedRefit(std::move(fit), extended, baseline, &effect, adopted);
+      extended.CalibrateFrom(start, StageOf(effect), hopeless_cost, baseline.progress);
+  return FinishedRefit(std::move(fit), extended, baseline, effect, adopted);
+}
+
+EffectRefit ContinueWithinBudget(const BaselineModel& baseline, const ScoredVariant* effect,
+                                 const AdoptedNuisances& adopted, EffectRefit refit,
+                                 double hopeless_cost, int predictions) {
+  predictions += refit.calibration.predictions;
+  while (predictions < kThresholds.refit.most_of_effect && refit.message.empty() &&
+         !refit.unconverged.empty() && refit.calibration.cost <= hopeless_cost) {
+    EffectRefit further =
+        RefitFromValues(baseline, effect, adopted, refit.calibration.parameters, hopeless_cost);
+    predictions += further.calibration.predictions;
+    if (!further.message.empty()) break;
+    const double gained = refit.calibration.cost - further.calibration.cost;
+    refit = std::move(further);
+    if (!(gained > 0)) break;
+  }
+  return refit;
+}
+
+EffectRefit SettledBeside(const BaselineModel& baseline, const ScoredVariant& effect,
+                          const AdoptedNuisances& adopted, EffectRefit refit) {
+  const ExtendedProblem extended(baseline, &effect, adopted);
+  const Eigen::VectorXd values = refit.values_at_fit;
+  refit.hypothesis =
+      HypothesisAt(extended.problem(), values, adopted, baseline.misfit, &refit.at_fit);
+  FinishBeside(extended, baseline, adopted, values, &refit);
+  return refit;
 }
 
 }  // namespace lacuna

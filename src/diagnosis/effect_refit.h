@@ -71,8 +71,11 @@ double PredictiveGain(const EffectRefit& with, const EffectRefit& without, const
 // Whether that is compatible with the effect being missing. If it is, the gain is below −ln 100 in
 // fewer than one recording in 100, whatever the size of the effect: exp(−gain) then is a ratio of
 // densities with the mean 1 (Markov's inequality). True where nothing is held out, and if the refit
-// has not converged: other parameters may predict better.
-bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise);
+// has not converged: other parameters may predict better. `tests`: the number of comparisons all of
+// which the refit must pass; each allows for so much less, so that the bound holds for all of them
+// together (Bonferroni).
+bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise,
+              int tests = 1);
 
 // Whether the held-out error with the effect is clearly larger than without it, which shows that
 // the effect follows the fitted frames with wrong parameters.
@@ -94,12 +97,27 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                   RefitFrom from = RefitFrom::kFirstOrder, const EffectRefit* without = nullptr,
                   double hopeless_cost = std::numeric_limits<double>::infinity());
 
-// The same fit from these values of the problem's parameters, at which another fit of the model
-// with the effect has ended: one that had not converged, or one beside other nuisances or with a
-// further effect. Values beyond the bounds of the parameters are moved to them.
-EffectRefit RefitFromValues(const BaselineModel& baseline, const ScoredVariant& effect,
+// The same fit from these values of the problem's parameters, at which another fit of the same
+// model has ended: one that had not converged, or one beside other nuisances or with a further
+// effect. Values beyond the bounds of the parameters are moved to them.
+EffectRefit RefitFromValues(const BaselineModel& baseline, const ScoredVariant* effect,
                             const AdoptedNuisances& adopted, const Eigen::VectorXd& values,
                             double hopeless_cost = std::numeric_limits<double>::infinity());
+
+// Continues a fit that has not converged from where it has ended, as long as it gains and its cost
+// does not exceed `hopeless_cost`, within the budget of one effect (RefitThresholds::
+// most_of_effect). `predictions`: those that were made for this effect before this fit. A fit that
+// cannot be continued stays as it is. Throws Interrupted.
+EffectRefit ContinueWithinBudget(const BaselineModel& baseline, const ScoredVariant* effect,
+                                 const AdoptedNuisances& adopted, EffectRefit refit,
+                                 double hopeless_cost = std::numeric_limits<double>::infinity(),
+                                 int predictions = 0);
+
+// The refit beside other nuisances, without a new fit: it is settled from where it is with the
+// Jacobian that it has, which takes a few predictions without derivatives. Its estimates stay those
+// of its fit. A model that cannot be predicted there gives a message.
+EffectRefit SettledBeside(const BaselineModel& baseline, const ScoredVariant& effect,
+                          const AdoptedNuisances& adopted, EffectRefit refit);
 
 }  // namespace lacuna
 

@@ -1,5 +1,7 @@
 #include "diagnosis/open_decision.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -57,14 +59,15 @@ bool RankAlongRefit(const std::string& effect, OpenDecision* open) {
   return true;
 }
 
-// Fits a pair and decides again. A pair that cannot be fitted is no hypothesis any more.
+// Fits a pair of which one effect has a usable refit, beside the columns along the motion of a
+// refit, and decides again. A pair that cannot be fitted is no hypothesis any more.
 void AddPair(const PairToFit& wanted, OpenDecision* open) {
   RefittedRanking& ranked = *open->ranked;
   const std::optional<size_t> k = ranked.FindUsable(wanted.first);
-  std::optional<FittedPair> pair;
-  if (k && ranked.along)
-    pair = FitPair(open->context.model, ranked.effects[*k].scored, ranked.refits[*k],
-                   wanted.further, *ranked.along, wanted.first == ranked.along_type);
+  CHECK(k && ranked.along);
+  std::optional<FittedPair> pair =
+      FitPair(open->context.model, ranked.effects[*k].scored, ranked.refits[*k], wanted.further,
+              *ranked.along, wanted.first == ranked.along_type);
   if (!pair) {
     open->failed_pairs.push_back({wanted.first, wanted.further});
     open->DecideAgain();
@@ -103,7 +106,10 @@ void RankAlongBest(OpenDecision* open) {
       open->DecideAgain();
     } else if (best.kind == Kind::kPair && !IsFitted(ranked.pairs, best.names[0], best.names[1])) {
       const bool is_first = best.names[0] == ranked.along_type;
-      AddPair({ranked.along_type, best.names[is_first ? 1 : 0]}, open);
+      const std::optional<PairToFit> pair =
+          FromARefit({ranked.along_type, best.names[is_first ? 1 : 0]}, ranked);
+      if (!pair) break;
+      AddPair(*pair, open);
     } else {
       break;
     }
@@ -118,17 +124,26 @@ void FitRivalPairs(OpenDecision* open) {
     std::vector<PairToFit> next;
     if (!IsFitted(ranked.pairs, best.names[0], best.names[1])) {
       // Another pair has become the most probable one.
-      next.push_back({best.names[0], best.names[1]});
+      if (const auto pair = FromARefit({best.names[0], best.names[1]}, ranked))
+        next.push_back(*pair);
     } else if (fits < kMostRivalPairs) {
       const double hopeless = DecisiveLead(best.evidence);
-      next = RivalsOf(best, ranked, open->diagnosis->decision_input.families);
-      std::erase_if(next, [&](const PairToFit& one) { return one.lost > hopeless; });
+      for (const PairToFit& rival :
+           RivalsOf(best, ranked, open->diagnosis->decision_input.families))
+        if (const auto pair = FromARefit(rival, ranked); pair && pair->lost <= hopeless)
+          next.push_back(*pair);
     }
     std::erase_if(next,
                   [&](const PairToFit& one) { return HasFailed(*open, one.first, one.further); });
     if (next.empty()) break;
     AddPair(next.front(), open);
   }
+}
+
+std::optional<PairToFit> FromARefit(PairToFit pair, const RefittedRanking& ranked) {
+  if (!ranked.FindUsable(pair.first)) std::swap(pair.first, pair.further);
+  if (!ranked.FindUsable(pair.first)) return std::nullopt;
+  return pair;
 }
 
 std::vector<PairToFit> RivalsOf(const HypothesisProbability& pair, const RefittedRanking& ranked,

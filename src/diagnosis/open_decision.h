@@ -5,6 +5,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@
 
 namespace lacuna {
 
-// Two effects that may be missing together. The first one has a refit.
+// Two effects that may be missing together. A pair is fitted from the refit of the first one.
 struct PairToFit {
   std::string first, further;
   // Of a rival of another pair: the evidence that the replacement of one effect costs, to first
@@ -49,6 +50,10 @@ void RankAlongBest(OpenDecision* open);
 // first-order value of a pair is kept low on purpose (combinations.cc), so that a fitted pair would
 // have an advantage over them.
 void FitRivalPairs(OpenDecision* open);
+
+// The pair with an effect first that has a usable refit; nothing if neither has one: such a pair
+// cannot be fitted, but stays a hypothesis to first order.
+std::optional<PairToFit> FromARefit(PairToFit pair, const RefittedRanking& ranked);
 
 // The pairs in which another effect of its family replaces one effect of `pair`, and which have not
 // been fitted, by what the replacement costs, the least first. An effect that the held-out frames

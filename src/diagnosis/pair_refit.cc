@@ -90,7 +90,7 @@ std::optional<FittedPair> FitPair(const BaselineModel& baseline, const ScoredVar
                             misfit,
                             baseline.progress,
                             baseline.kept,
-                            baseline.noise,
+                            ranking.noise,
                             ranking.ModelError()};
   FittedPair pair;
   pair.first = first.candidate.type;

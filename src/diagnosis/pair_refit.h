@@ -28,7 +28,7 @@ EffectRanking RankAlong(const BaselineModel& baseline, const ScoredVariant& effe
                         const DecidedBase& decided);
 
 // Fits the model with `first`, from its refit, and with a further effect, from its place, direction
-// and time in `ranking`, beside the nuisances of that ranking, beside which the refit stands, too.
+// and time in `ranking`, beside the nuisances and with the noise of that ranking, as the refit was.
 // `is_along_first`: the ranking is along the motion of this refit; otherwise, of one with another
 // effect. Nothing if the pair cannot be fitted. Throws Interrupted.
 std::optional<FittedPair> FitPair(const BaselineModel& baseline, const ScoredVariant& first,

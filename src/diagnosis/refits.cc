@@ -31,11 +31,47 @@ const AdoptedNuisances& NuisancesOf(const RefitContext& context, const RefittedR
   return ranked.along ? ranked.along->adopted : context.ranking.adopted;
 }
 
+// The model without an effect, beside these nuisances.
+EffectRefit RefitWithout(const BaselineModel& model, const AdoptedNuisances& nuisances) {
+  return ContinueWithinBudget(model, nullptr, nuisances, Refit(model, nullptr, nuisances, false));
+}
+
+// The model with an effect from these values, beside the present columns.
+EffectRefit RefitBeside(const RefitContext& context, const RefittedRanking& ranked,
+                        const ScoredVariant& variant, const Eigen::VectorXd& values,
+                        double hopeless_cost, Progress* progress) {
+  const BaselineModel model = ModelOf(context, ranked, progress);
+  const AdoptedNuisances& nuisances = NuisancesOf(context, ranked);
+  return ContinueWithinBudget(model, &variant, nuisances,
+                              RefitFromValues(model, &variant, nuisances, values, hopeless_cost),
+                              hopeless_cost);
+}
+
 // The cost of the fitted frames above which a refit is negligible beside that of `best`.
 double HopelessCost(const RefittedRanking& ranked, const std::optional<size_t>& best) {
   if (!best || !ranked.IsUsable(*best)) return std::numeric_limits<double>::infinity();
   const double cost = ranked.refits[*best].calibration.cost;
   return cost + DecisiveLead(ranked.baseline.calibration.cost - cost);
+}
+
+// Whether a refit is so far behind the best one that it is negligible.
+bool IsFarBehind(const RefittedRanking& ranked, const EffectRefit& refit, const NoiseLevel& noise) {
+  const double evidence = EvidenceOf(refit, noise).all - ranked.baseline_evidence;
+  return ranked.best && ranked.best_evidence - evidence > DecisiveLead(ranked.best_evidence);
+}
+
+// Sets whether the held-out frames refute the refit of an effect, and takes it for the best one
+// where they do not and it has more evidence than the best one so far.
+void CompareWithBest(const NoiseLevel& noise, size_t effect, RefittedRanking* ranked) {
+  RankedEffect& own = ranked->effects[effect];
+  if (!own.HasUsableRefit()) return;
+  const EffectRefit& refit = ranked->refits[effect];
+  own.predicts = Predicts(refit, ranked->baseline, noise);
+  const double evidence = EvidenceOf(refit, noise).all - ranked->baseline_evidence;
+  if (!own.predicts || !(evidence > ranked->best_evidence)) return;
+  ranked->best = effect;
+  ranked->best_evidence = evidence;
+  ranked->underrated = std::max(0.0, evidence - own.scored.score.evidence);
 }
 
 // Refits an effect from the variants of `from`, and keeps the better refit where it has one
@@ -55,16 +91,8 @@ void RefitOne(const RefitContext& context, size_t effect, const ScoredEffect& fr
                   is_found, from, HopelessCost(*ranked, ranked->best));
   // The score stays that of all fitted frames.
   if (&from != &own.scored) fitted.variant.score = own.scored.score;
-  if (!ranked->TakeIfBetter(effect, std::move(fitted), context.ranking.noise)) return;
-  if (!own.HasUsableRefit()) return;
-  const EffectRefit& refit = ranked->refits[effect];
-  ranked->effects[effect].predicts = Predicts(refit, ranked->baseline, context.ranking.noise);
-  if (!own.predicts) return;
-  const double evidence = EvidenceOf(refit, context.ranking.noise).all - ranked->baseline_evidence;
-  if (evidence <= ranked->best_evidence) return;
-  ranked->best = effect;
-  ranked->best_evidence = evidence;
-  ranked->underrated = std::max(0.0, evidence - own.scored.score.evidence);
+  if (ranked->TakeIfBetter(effect, std::move(fitted), context.ranking.noise))
+    CompareWithBest(context.ranking.noise, effect, ranked);
 }
 
 bool AreOfOneFamily(const RankedEffect& a, const RankedEffect& b) {
@@ -114,15 +142,32 @@ void SetEvidence(const EffectRefit& with, const Comparison& comparison, RankedEf
   effect->rms_over_sigma = RmsOverSigma(with.hypothesis);
 }
 
-// Fits the model with a refitted effect from where it is, beside the present columns.
-void Continue(const RefitContext& context, size_t effect, double hopeless_cost, Progress* progress,
-              RefittedRanking* ranked) {
-  if (!ranked->IsUsable(effect)) return;
+// Fits the model with a refitted effect from where it is, beside the present columns. If that
+// fails, the refit is settled beside them, and so is one `was_far_behind` that still is.
+void Continue(const RefitContext& context, size_t effect, bool was_far_behind, double hopeless_cost,
+              Progress* progress, RefittedRanking* ranked) {
   const ScoredVariant& variant = ranked->effects[effect].scored;
-  ranked->Take(effect,
-               {variant, RefitFromValues(ModelOf(context, *ranked, progress), variant,
-                                         NuisancesOf(context, *ranked),
-                                         ranked->refits[effect].values_at_fit, hopeless_cost)});
+  const EffectRefit& before = ranked->refits[effect];
+  const auto settled = [&](const std::string& reason) {
+    EffectRefit refit = SettledBeside(ModelOf(context, *ranked, progress), variant,
+                                      NuisancesOf(context, *ranked), before);
+    if (refit.unconverged.empty()) refit.unconverged = reason;
+    return refit;
+  };
+  if (was_far_behind) {
+    EffectRefit refit =
+        settled("it is too far behind to be fitted along the motion with " + ranked->along_type);
+    if (refit.message.empty() && IsFarBehind(*ranked, refit, context.ranking.noise)) {
+      ranked->Take(effect, {variant, std::move(refit)});
+      return;
+    }
+  }
+  EffectRefit refit =
+      RefitBeside(context, *ranked, variant, before.values_at_fit, hopeless_cost, progress);
+  if (!refit.message.empty())
+    refit = settled("the fit along the motion with " + ranked->along_type +
+                    " has failed: " + refit.message);
+  ranked->Take(effect, {variant, std::move(refit)});
 }
 
 // The hypothesis with the smallest residual: the model without an effect, or a refit or a pair that
@@ -140,7 +185,7 @@ const FittedHypothesis& LeastResidual(const RefittedRanking& ranked, const Noise
     if (ranked.IsUsable(k) && Predicts(ranked.refits[k], ranked.baseline, noise))
       compare(ranked.refits[k].hypothesis);
   for (const FittedPair& pair : ranked.pairs)
-    if (Predicts(pair.both, ranked.baseline, noise)) compare(pair.both.hypothesis);
+    if (PairPredicts(pair, ranked, noise)) compare(pair.both.hypothesis);
   return *best;
 }
 
@@ -190,6 +235,16 @@ bool RefittedRanking::TakeIfBetter(size_t effect, VariantRefit fitted, const Noi
   return true;
 }
 
+bool PairPredicts(const FittedPair& pair, const RefittedRanking& ranked, const NoiseLevel& noise) {
+  constexpr int kTests = 3;
+  const auto beyond = [&](const std::string& type) {
+    const std::optional<size_t> alone = ranked.FindUsable(type);
+    return !alone || Predicts(pair.both, ranked.refits[*alone], noise, kTests);
+  };
+  return Predicts(pair.both, ranked.baseline, noise, kTests) && beyond(pair.first) &&
+         beyond(pair.second.scored.candidate.type);
+}
+
 double DecisiveLead(double gain) {
   return std::max(kThresholds.refit.beaten_by, kThresholds.refit.beaten_share * gain);
 }
@@ -197,7 +252,7 @@ double DecisiveLead(double gain) {
 RefittedRanking StartRefits(const RefitContext& context, const std::vector<ScoredEffect>& effects,
                             int wanted) {
   RefittedRanking ranked;
-  ranked.baseline = Refit(context.model, nullptr, context.ranking.adopted, false);
+  ranked.baseline = RefitWithout(context.model, context.ranking.adopted);
   CHECK(ranked.baseline.message.empty()) << ranked.baseline.message;
   ranked.baseline_evidence = EvidenceOf(ranked.baseline, context.ranking.noise).all;
   for (ScoredEffect& effect :
@@ -267,29 +322,39 @@ void LookAlong(const RefitContext& context, const std::string& type, EffectRanki
   std::vector<size_t> others;
   for (size_t effect = 0; effect < ranked->effects.size(); ++effect)
     if (effect != first && ranked->IsUsable(effect)) others.push_back(effect);
+  const NoiseLevel& noise = context.ranking.noise;
+  std::vector<char> were_far_behind;
+  for (const size_t effect : others)
+    were_far_behind.push_back(IsFarBehind(*ranked, ranked->refits[effect], noise));
+  ranked->best.reset();
+  ranked->best_evidence = ranked->underrated = 0;
   // The refit along whose motion the columns were computed tells which others are hopeless.
-  if (first)
-    Continue(context, *first, std::numeric_limits<double>::infinity(), context.model.progress,
-             ranked);
+  if (first) {
+    Continue(context, *first, /*was_far_behind=*/false, std::numeric_limits<double>::infinity(),
+             context.model.progress, ranked);
+    CompareWithBest(noise, *first, ranked);
+  }
   const double hopeless_cost = HopelessCost(*ranked, first);
   Progress& progress = *context.model.progress;
   progress.Begin("refit along the motion with " + type, static_cast<int64_t>(others.size()));
   std::atomic<int64_t> done = 0;
   ParallelFor(static_cast<int64_t>(others.size()), 1, [&](int64_t k) {
+    const size_t at = static_cast<size_t>(k);
     Progress silent({.style = ProgressStyle::kSilent});
-    Continue(context, others[static_cast<size_t>(k)], hopeless_cost, &silent, ranked);
+    Continue(context, others[at], were_far_behind[at] != 0, hopeless_cost, &silent, ranked);
     progress.Report(++done);
   });
   progress.End();
+  for (const size_t effect : others) CompareWithBest(noise, effect, ranked);
 }
 
 void RefitAgain(const RefitContext& context, size_t effect, const Eigen::VectorXd& values,
                 const NoiseLevel& noise, RefittedRanking* ranked) {
   const ScoredVariant variant = ranked->effects[effect].scored;
-  ranked->TakeIfBetter(effect,
-                       {variant, RefitFromValues(ModelOf(context, *ranked, context.model.progress),
-                                                 variant, NuisancesOf(context, *ranked), values)},
-                       noise);
+  EffectRefit refit = RefitBeside(context, *ranked, variant, values,
+                                  std::numeric_limits<double>::infinity(), context.model.progress);
+  if (ranked->TakeIfBetter(effect, {variant, std::move(refit)}, noise))
+    CompareWithBest(context.ranking.noise, effect, ranked);
 }
 
 RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {
@@ -329,25 +394,25 @@ void RefitRivalNuisances(const RefitContext& context, RefittedRanking* ranked) {
     Progress silent({.style = ProgressStyle::kSilent});
     BaselineModel model = context.model;
     model.progress = &silent;
-    refits[at] =
-        Refit(model, nullptr, context.ranking.adopted.And(nuisances[rivals[at]].candidate), false);
+    refits[at] = RefitWithout(model, context.ranking.adopted.And(nuisances[rivals[at]].candidate));
     progress.Report(++done);
   });
   for (size_t k = 0; k < rivals.size(); ++k)
-    if (refits[k].message.empty()) ranked->nuisances[rivals[k]] = std::move(refits[k].hypothesis);
+    if (refits[k].message.empty()) ranked->nuisances[rivals[k]] = std::move(refits[k]);
   progress.End();
 }
 
 void WeighNuisances(const RefittedRanking& ranked, const RefitNoise& noise,
                     std::vector<ScoredNuisance>* nuisances) {
   const double before = EvidenceOf(ranked.baseline.hypothesis, noise.level).log_evidence;
-  for (const auto& [k, hypothesis] : ranked.nuisances) {
+  for (const auto& [k, refit] : ranked.nuisances) {
     ScoredNuisance& nuisance = (*nuisances)[k];
-    const double evidence = EvidenceOf(hypothesis, noise.level).log_evidence - before -
-                            nuisance.candidate.selection_penalty -
-                            SelectionPenalty(nuisances->size());
+    double evidence = EvidenceOf(refit.hypothesis, noise.level).log_evidence - before -
+                      nuisance.candidate.selection_penalty - SelectionPenalty(nuisances->size());
     nuisance.refitted.reset();
-    if (std::isfinite(evidence)) nuisance.refitted = evidence;
+    if (!std::isfinite(evidence)) continue;
+    if (!refit.unconverged.empty()) evidence = std::max(evidence, nuisance.evidence);
+    nuisance.refitted = evidence;
   }
 }
 
@@ -358,7 +423,7 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
   const EffectRanking& ranking = context.ranking;
   if (!ranking.adopted.HasMore()) return alternatives;
   const AdoptedNuisances always = ranking.adopted.Always();
-  const EffectRefit bare = Refit(context.model, nullptr, always, false);
+  const EffectRefit bare = RefitWithout(context.model, always);
   if (!bare.message.empty()) return alternatives;
   alternatives.bare = bare.errors;
   const Comparison comparison{context.model.problem, bare, noise.level, ranked.effects.size()};

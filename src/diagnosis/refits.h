@@ -44,8 +44,9 @@ struct RefittedRanking {
   std::vector<EffectRefit> refits;    // of the effects, in the same order; empty if not refitted
   int count = 0;                      // number of refits
   int limit = 0;                      // the largest number of refits
-  // Of the model without an effect, and the largest one of a refit that predicts beyond it; with
-  // the noise of the ranking.
+  // That of the model without an effect, and by how much the best refit that the held-out frames do
+  // not refute exceeds it; with the noise of the ranking. All refits stand beside the same columns,
+  // and LookAlong() finds the best one anew.
   double baseline_evidence = 0, best_evidence = 0;
   double underrated = 0;       // by how much first order has underrated the evidence of that refit
   std::optional<size_t> best;  // the effect of that refit
@@ -54,8 +55,8 @@ struct RefittedRanking {
   // hypotheses, with the baseline's columns.
   std::string along_type;
   std::shared_ptr<const EffectRanking> along, along_for_others;
-  std::vector<FittedPair> pairs;                 // beside the same columns
-  std::map<size_t, FittedHypothesis> nuisances;  // fits with a nuisance, by its index
+  std::vector<FittedPair> pairs;            // beside the same columns
+  std::map<size_t, EffectRefit> nuisances;  // fits with a nuisance, by its index
 
   bool IsUsable(size_t effect) const { return effects[effect].HasUsableRefit(); }
   // The index of the effect of this type; nothing if it has no usable refit.
@@ -67,11 +68,17 @@ struct RefittedRanking {
   bool TakeIfBetter(size_t effect, VariantRefit fitted, const NoiseLevel& noise);
 };
 
-// The noise of the measurements, and the rms of the hypothesis with the smallest residual.
+// The noise of the measurements, and the rms of the hypothesis with the smallest residual among the
+// model without an effect, the refits and the pairs; refuted ones do not count.
 struct RefitNoise {
   NoiseLevel level;
   double least_rms_over_sigma = 0;
 };
+
+// Whether the held-out frames are compatible with both effects of a pair being missing (Predicts):
+// it is compared with the model without an effect and with the usable refits of its two effects
+// alone, three tests of which each allows for a third of the false refutations.
+bool PairPredicts(const FittedPair& pair, const RefittedRanking& ranked, const NoiseLevel& noise);
 
 // By how much an effect must be behind the best refit to be negligible, if that gains so much.
 double DecisiveLead(double gain);
@@ -105,8 +112,10 @@ void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEff
 // beside all refits, and fits each of them anew beside these columns, from where it is. Every refit
 // that follows the measurements moves like that one, while the baseline, without the effect, may
 // move otherwise: its columns of the mesh and the time step are then wrong for all of them, and
-// what is wrong looks like a further effect. Pairs that were fitted beside other columns are
-// dropped. Throws Interrupted.
+// what is wrong looks like a further effect. A refit that is behind the best one by DecisiveLead(),
+// beside the old columns and once it has been settled beside the new ones (SettledBeside), is not
+// fitted. Neither is one whose fit has failed; both count as not converged. Pairs that were fitted
+// beside other columns are dropped. Throws Interrupted.
 void LookAlong(const RefitContext& context, const std::string& type, EffectRanking along,
                RefittedRanking* ranked);
 
@@ -116,14 +125,15 @@ void LookAlong(const RefitContext& context, const std::string& type, EffectRanki
 void RefitAgain(const RefitContext& context, size_t effect, const Eigen::VectorXd& values,
                 const NoiseLevel& noise, RefittedRanking* ranked);
 
-// Estimates the noise from the refit or pair with the smallest residual, and computes the evidence
-// of all refits. Replaces the results of an earlier call.
+// Estimates the noise from the hypothesis with the smallest residual, as in RefitNoise, and
+// computes the evidence of all refits. Replaces the results of an earlier call.
 RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked);
 
 // Refits the model with each nuisance that first order puts near the best effect or above it.
 void RefitRivalNuisances(const RefitContext& context, RefittedRanking* ranked);
 
-// Sets ScoredNuisance::refitted of the nuisances that were refitted.
+// Sets ScoredNuisance::refitted of the nuisances that were refitted. A refit that has not converged
+// has found less than the nuisance can explain, so that first order counts where that is more.
 void WeighNuisances(const RefittedRanking& ranked, const RefitNoise& noise,
                     std::vector<ScoredNuisance>* nuisances);
 

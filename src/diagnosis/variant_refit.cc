@@ -52,16 +52,9 @@ VariantRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& ad
   if (!effect.candidate.IsPilot() && has_budget() &&
       IsLikelyLocalMinimum(context.ranking, best.refit, without, effect.score))
     keep_better(from(effect, RefitFrom::kFixedSize));
-  while (has_budget() && !best.refit.unconverged.empty() &&
-         best.refit.calibration.cost <= hopeless_cost) {
-    EffectRefit further = RefitFromValues(context.model, best.variant, adopted,
-                                          best.refit.calibration.parameters, hopeless_cost);
-    predictions += further.calibration.predictions;
-    if (!further.message.empty()) break;
-    const double gained = best.refit.calibration.cost - further.calibration.cost;
-    best.refit = std::move(further);
-    if (!(gained > 0)) break;
-  }
+  const int of_others = predictions - best.refit.calibration.predictions;
+  best.refit = ContinueWithinBudget(context.model, &best.variant, adopted, std::move(best.refit),
+                                    hopeless_cost, of_others);
   return best;
 }
 

@@ -27,11 +27,11 @@ struct VariantRefit {
 double EvidenceOf(const ScoredVariant& variant, const EffectRefit& refit, const NoiseLevel& noise);
 
 // Refits an effect from its best variants, and from a fixed size where that seems to end in a local
-// minimum. A fit that ends at its largest number of predictions goes on, within the budget of the
-// effect, if it has come close enough to the measurements for `hopeless_cost`. `without`: the refit
-// with the same nuisances alone. `is_found`: another refit has come down to the noise, which shows
-// that first order leads to the right minimum; a model that is far off is then not fitted afresh
-// with this effect. `hopeless_cost`: as in CalibrationOptions. Throws Interrupted.
+// minimum. The best of these fits goes on if it has not converged (ContinueWithinBudget).
+// `without`: the refit with the same nuisances alone. `is_found`: another refit has come down to
+// the noise, which shows that first order leads to the right minimum; a model that is far off is
+// then not fitted afresh with this effect. `hopeless_cost`: as in CalibrationOptions. Throws
+// Interrupted.
 VariantRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
                          const EffectRefit& without, bool is_found, const ScoredEffect& effect,
                          double hopeless_cost = std::numeric_limits<double>::infinity());

@@ -91,9 +91,11 @@ void ExplainUnknown(const Diagnosis& diagnosis, Conclusion* conclusion) {
     return;
   }
   const std::string& type = best->scored.candidate.type;
+  // The test of adequacy may have examined the effect with nuisances beside it.
+  const bool is_tested = std::count(adequacy.beside.begin(), adequacy.beside.end(), type) > 0;
   conclusion->reasons = {ResidualRemains{
       type, ExplainedExcess(diagnosis.baseline_rms_over_sigma, best->rms_over_sigma),
-      best->rms_over_sigma}};
+      is_tested ? adequacy.rms_over_sigma : best->rms_over_sigma}};
   if (const RankedEffect* other = FindEffect(diagnosis, adequacy.further);
       other != nullptr && adequacy.further_evidence > 0) {
     conclusion->reasons.emplace_back(

@@ -37,9 +37,9 @@ struct DiagnosedRun {
 std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis);
 
 // The outcomes are sorted. A protocol that cannot be played is reported in its message. Throws
-// InputError where the diagnosis has left fewer than two hypotheses or no effect among them.
-// Protocols are played side by side; the result does not depend on the number of threads. Throws
-// Interrupted.
+// InputError where the diagnosis has left fewer than two hypotheses that differ in their effects,
+// or no effect among them. Protocols are played side by side; the result does not depend on the
+// number of threads. Throws Interrupted.
 PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protocols,
                     Progress* progress);
 

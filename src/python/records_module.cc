@@ -123,7 +123,9 @@ void DefineDiagnosis(py::module_* module) {
       .def_readonly("probability", &HypothesisProbability::probability)
       .def_readonly("evidence", &HypothesisProbability::evidence,
                     "log Bayes factor against the model as it is, less the logarithm of the number "
-                    "of effects (or nuisances) that were tried")
+                    "of effects (or nuisances) that were tried and, of effects, less what the "
+                    "error of the model could give to one; for two effects, or an effect with a "
+                    "nuisance, see docs/diagnosis.md, section 4")
       .def("__repr__", [](const HypothesisProbability& h) {
         return fmt::format("<{} {}: {:.3f}>", HypothesisKindName(h.kind), fmt::join(h.names, " + "),
                            h.probability);

@@ -29,8 +29,9 @@ struct HypothesisProbability {
   double evidence = 0;
   double probability = 0;
   // An effect that predicts the held-out frames more than 100 times less probably than the model
-  // without it, or a pair that does so beside the model with one of its effects. It counts as
-  // refuted, whatever its evidence: its probability is 0.
+  // without it, or a pair that predicts them more than 300 times less probably than the model
+  // without an effect or with one of the two alone. It counts as refuted, whatever its evidence:
+  // its probability is 0.
   bool is_refuted = false;
 
   bool Contains(const std::string& name) const {

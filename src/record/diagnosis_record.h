@@ -111,7 +111,8 @@ struct DiagnosisRecord : Conclusion {
   DecisionRecord decision;    // what the verdict follows from
   AgreementRecord agreement;  // of the recordings about the parameters of the fitted model
   // Over all frames, with the adopted nuisances at their best: of the model as it is, and of the
-  // best-fitting model, i.e. the one with the smallest residual of it and of all refits.
+  // best-fitting model, i.e. the one with the smallest residual of it and of all refits with
+  // one effect or two that are not refuted.
   double baseline_rms_over_sigma = 0, best_rms_over_sigma = 0;
   ModelErrors errors;  // errors of the unchanged model
   std::vector<RecordedNuisance> nuisances;

@@ -53,8 +53,9 @@ struct NuisanceExplains {
   double share = 0;
 };
 
-// The best effect explains this share of the squared misfit in excess of the noise; what remains
-// over all frames is more than noise leaves.
+// The best effect explains this share of the squared misfit in excess of the noise. What remains
+// over all frames, with everything beside it that the test of adequacy has taken
+// (RecordedAdequacy::beside), is more than noise leaves.
 struct ResidualRemains {
   std::string effect;
   double share = 0;

@@ -85,14 +85,6 @@ std::string NextStep(const DiagnosisRecord& diagnosis) {
   return steps.empty() ? "" : " To decide: " + steps + (steps.ends_with('.') ? "" : ".");
 }
 
-// The hypothesis that exactly this is what is missing; null where the record has none.
-const HypothesisProbability* FindHypothesis(const DecisionRecord& decision,
-                                            const std::vector<std::string>& names) {
-  for (const HypothesisProbability& one : decision.probabilities)
-    if (one.names == names) return &one;
-  return nullptr;
-}
-
 // The sum over the hypotheses that fulfil a condition; NaN where the record has none.
 template <class Condition>
 double ProbabilityWhere(const DecisionRecord& decision, const Condition& condition) {
@@ -100,6 +92,14 @@ double ProbabilityWhere(const DecisionRecord& decision, const Condition& conditi
   for (const HypothesisProbability& one : decision.probabilities)
     if (condition(one)) sum = (std::isnan(sum) ? 0 : sum) + one.probability;
   return sum;
+}
+
+// The family of an effect; empty where no hypothesis has it alone or with nuisances beside it.
+std::optional<EffectFamily> FamilyOf(const DecisionRecord& decision, const std::string& effect) {
+  for (const HypothesisProbability& one : decision.probabilities)
+    if (one.kind == HypothesisProbability::Kind::kEffect && one.names.front() == effect)
+      return one.family;
+  return std::nullopt;
 }
 
 // With the probability that this effect or nuisance is the cause, whatever nuisances stand beside
@@ -119,18 +119,17 @@ std::string MissingSentence(const ReportedModel& model) {
   const DiagnosisRecord& diagnosis = *model.diagnosis;
   std::vector<std::string> titles, details;
   for (const std::string& name : diagnosis.effects) titles.push_back(ShortTitle(diagnosis, name));
-  if (const HypothesisProbability* found = FindHypothesis(diagnosis.decision, diagnosis.effects)) {
-    if (found->kind == HypothesisProbability::Kind::kEffect &&
-        found->family != EffectFamily::kOther)
-      details.push_back(FamilyTitle(found->family));
-    // Whatever else may be missing, too.
-    details.push_back(
-        "probability " +
-        PercentText(ProbabilityWhere(diagnosis.decision, [&](const HypothesisProbability& one) {
-          return std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(),
-                             [&](const auto& name) { return one.Contains(name); });
-        })));
-  }
+  const std::optional<EffectFamily> family =
+      diagnosis.effects.size() == 1 ? FamilyOf(diagnosis.decision, diagnosis.effects.front())
+                                    : std::nullopt;
+  if (family && *family != EffectFamily::kOther) details.push_back(FamilyTitle(*family));
+  // Whatever else may be missing, too.
+  const double probability =
+      ProbabilityWhere(diagnosis.decision, [&](const HypothesisProbability& one) {
+        return std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(),
+                           [&](const auto& name) { return one.Contains(name); });
+      });
+  if (!std::isnan(probability)) details.push_back("probability " + PercentText(probability));
   return fmt::format("What it {}lacks: {}{}.", model.added.empty() ? "" : "still ",
                      fmt::join(titles, " and "),
                      details.empty() ? "" : fmt::format(" ({})", fmt::join(details, "; ")));
@@ -189,11 +188,16 @@ std::string UnknownSentence(const DiagnosisRecord& diagnosis) {
   const std::optional<std::string> part = PartlyExplainedBy(diagnosis);
   if (!part) return "Something is missing that no effect of the catalogue explains.";
   const auto& remains = std::get<ResidualRemains>(diagnosis.reasons.front());
+  std::vector<std::string> beside;
+  for (const std::string& name : TestedBeside(diagnosis, *part))
+    beside.push_back(ShortTitle(diagnosis, name));
   return fmt::format(
       "Of all effects of the catalogue, {} explains most: {:.0f} % of the squared error beyond the "
-      "noise. {:.1f} times the noise is left, which no effect explains: something else is missing, "
-      "beside it or in its place.",
-      ShortTitle(diagnosis, *part), 100 * remains.share, remains.rms_over_sigma);
+      "noise. {}{:.1f} times the noise is left, which no effect explains: something else is "
+      "missing, beside it or in its place.",
+      ShortTitle(diagnosis, *part), 100 * remains.share,
+      beside.empty() ? "" : fmt::format("With {} beside it, ", EnumerationText(beside)),
+      remains.rms_over_sigma);
 }
 
 std::string VerdictSentence(const ReportedModel& model) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <variant>
 #include <vector>
 
@@ -68,11 +69,12 @@ struct ReasonSentence {
                        nuisance.what, nuisance.advice);
   }
   std::string operator()(const ResidualRemains& reason) const {
+    const std::vector<std::string> beside = TestedBeside(diagnosis, reason.effect);
     return fmt::format(
-        "{} explains {:.0f} % of the squared misfit in excess of the noise, and {:.1f} σ remain: "
-        "it "
-        "may be present beside something unknown, or compensate for it.",
-        TitleOf(diagnosis, reason.effect), 100 * reason.share, reason.rms_over_sigma);
+        "{} explains {:.0f} % of the squared misfit in excess of the noise, and {:.1f} σ remain{}: "
+        "it may be present beside something unknown, or compensate for it.",
+        TitleOf(diagnosis, reason.effect), 100 * reason.share, reason.rms_over_sigma,
+        beside.empty() ? "" : fmt::format(" with {} beside it", EnumerationText(beside)));
   }
   std::string operator()(const EvidenceForAnother& reason) const {
     return fmt::format(
@@ -154,16 +156,20 @@ bool HasEvidence(const DiagnosisRecord& diagnosis, const std::string& type) {
 }
 
 // The effects that have evidence, but predict the held-out frames much less probably than the model
-// without them.
+// without them. An effect stands in several hypotheses: with nuisances beside it, and in their
+// place. It is refuted if all of these are.
 std::vector<std::string> RefutedSentences(const DiagnosisRecord& diagnosis) {
-  std::vector<std::string> sentences;
+  std::map<std::string, bool> is_refuted;
   for (const HypothesisProbability& one : diagnosis.decision.probabilities)
-    if (one.kind == HypothesisProbability::Kind::kEffect && one.is_refuted &&
-        HasEvidence(diagnosis, one.names.front()))
+    if (one.kind == HypothesisProbability::Kind::kEffect)
+      is_refuted.try_emplace(one.names.front(), true).first->second &= one.is_refuted;
+  std::vector<std::string> sentences;
+  for (const auto& [name, refuted] : is_refuted)
+    if (refuted && HasEvidence(diagnosis, name))
       sentences.push_back(
-          fmt::format("With {} the model fits better, but it predicts the held-out frames worse, "
-                      "and by more than chance: {} is refuted.",
-                      one.names.front(), one.names.front()));
+          fmt::format("With {0} the model fits better, but it predicts the held-out frames worse, "
+                      "and by more than chance: {0} is refuted.",
+                      name));
   return sentences;
 }
 
@@ -214,6 +220,11 @@ std::string ShortTitle(const DiagnosisRecord& diagnosis, const std::string& name
   if (title.size() > 1 && !is_abbreviation && std::islower(static_cast<unsigned char>(title[1])))
     title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
   return title;
+}
+
+std::vector<std::string> TestedBeside(const DiagnosisRecord& diagnosis, const std::string& effect) {
+  std::vector<std::string> beside = diagnosis.decision.adequacy.beside;
+  return std::erase(beside, effect) > 0 ? beside : std::vector<std::string>{};
 }
 
 std::string CorrectedError(const DiagnosisRecord& diagnosis) {

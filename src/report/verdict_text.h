@@ -3,6 +3,7 @@
 #define LACUNA_REPORT_VERDICT_TEXT_H_
 
 #include <string>
+#include <vector>
 
 #include "record/diagnosis_record.h"
 
@@ -17,6 +18,10 @@ std::string TitleOf(const DiagnosisRecord& diagnosis, const std::string& name);
 // The title within a sentence, without what it has in brackets: "Viscoelastic branch (Maxwell
 // element of a Prony series)" as "viscoelastic branch".
 std::string ShortTitle(const DiagnosisRecord& diagnosis, const std::string& name);
+
+// What the test of adequacy has taken beside this effect: names of nuisances and of a second
+// effect. Empty where it has examined a hypothesis without the effect.
+std::vector<std::string> TestedBeside(const DiagnosisRecord& diagnosis, const std::string& effect);
 
 // An error beyond the noise that the adopted nuisances explain: "corrected for the size of the
 // elements, the error is 1.0 times the noise: choose a smaller mesh.max_volume". Names the nuisance

@@ -28,7 +28,11 @@ std::string AsComment(const std::string& text) {
 bool IsSimulatedRecording(const std::filesystem::path& folder) {
   std::ifstream stream(folder / "recording.yaml");
   std::string line;
-  return std::getline(stream, line) && line.starts_with(std::string("# ") + kSimulated);
+  return std::getline(stream, line) && line == std::string("# ") + kSimulated;
+}
+
+void MarkAsSimulated(const std::filesystem::path& folder) {
+  WriteFileAtomically(folder / "recording.yaml", AsComment(kSimulated));
 }
 
 std::string WriteDensityAndGravity(const RecordedObject& object) {

@@ -17,11 +17,15 @@ namespace lacuna {
 std::string WriteDensityAndGravity(const RecordedObject& object);
 std::string WriteConstraints(const std::filesystem::path& folder, const RecordedObject& object);
 
-// The first word of recording.yaml, in a comment, where a simulation has written the recording.
-inline constexpr char kSimulated[] = "Simulated";
-// Whether `folder` contains a recording.yaml that begins with this word in a comment. It holds no
-// measurement, and may be replaced by another simulation.
+// The first line of recording.yaml, as a comment, where a simulation has written the recording.
+inline constexpr char kSimulated[] =
+    "Simulated by Lacuna; another simulation may replace the files of this folder.";
+// Whether `folder` contains a recording.yaml whose first line is this comment.
 bool IsSimulatedRecording(const std::filesystem::path& folder);
+// Writes a recording.yaml that contains nothing but this comment, in place of any that is there, so
+// that a folder whose recording is not complete can be recognised. Throws InputError when it cannot
+// be written.
+void MarkAsSimulated(const std::filesystem::path& folder);
 
 // A recording of markers that were simulated.
 struct MarkerRecording {

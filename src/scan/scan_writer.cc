@@ -40,9 +40,8 @@ void WriteScan(const std::filesystem::path& folder, const std::string& name,
   MakeFolder(folder / "frames");
   MakeFolder(folder / "truth");
 
-  std::string yaml =
-      fmt::format("# {} with virtual cameras.\nschema_version: 1\nname: {}\nlength_unit: m\n",
-                  kSimulated, QuotedText(name));
+  std::string yaml = fmt::format("# {}\nschema_version: 1\nname: {}\nlength_unit: m\n", kSimulated,
+                                 QuotedText(name));
   yaml += WriteDensityAndGravity(object);
   yaml += "frames:\n" + write_frames(folder, scan) + FormatTimes(scan.times);
   yaml += WriteConstraints(folder, object);

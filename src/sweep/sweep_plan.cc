@@ -97,6 +97,13 @@ std::string MessageAbout(const std::string& field, const std::string& message) {
 
 // A folder that does not exist yet is accepted.
 void RefuseForeignFolder(const fs::path& folder, const SweepIdentity& identity) {
+  // The folder is listed before sweep.json is looked for: another process that plans a sweep here
+  // writes that file before the others, so that it is found wherever one of the others was listed.
+  std::vector<fs::path> files;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().filename() != kLockName && !IsTemporaryFile(entry.path()))
+        files.push_back(entry.path());
   if (fs::exists(folder / "sweep.json")) {
     const SweepIdentity known = LoadIdentity(folder);
     if (known.command != identity.command)
@@ -105,10 +112,8 @@ void RefuseForeignFolder(const fs::path& folder, const SweepIdentity& identity) 
           fmt::format("contains a sweep of `{}`; choose another folder", NameOf(known.command)));
     return;
   }
-  if (!fs::is_directory(folder)) return;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().filename() != kLockName && !IsTemporaryFile(entry.path()))
-      throw InputError({folder.string()}, "is neither empty nor a sweep; choose another folder");
+  if (!files.empty())
+    throw InputError({folder.string()}, "is neither empty nor a sweep; choose another folder");
 }
 
 std::vector<SweepCase> PlannedCases(const fs::path& folder) {

@@ -14,6 +14,7 @@
 
 #include "core/config.h"
 #include "effects/catalogue.h"
+#include "scan/recording_writer.h"
 #include "support/ended_program.h"
 #include "support/temporary_folder.h"
 
@@ -118,7 +119,7 @@ TEST(CommandLine, ListsTheEffects) {
   EXPECT_THAT(Lacuna("explain gravty").said, HasSubstr("did you mean \"gravity\"?"));
   const std::string jitter = Lacuna("explain time_jitter").said;
   EXPECT_THAT(jitter, HasSubstr("check the camera's clock"));
-  EXPECT_THAT(jitter, HasSubstr("`every`"));  // thins out a recording with too many frames
+  EXPECT_THAT(jitter, HasSubstr("`every`"));  // reduces the number of frames
   EXPECT_EQ(Lacuna("explain").status, 2);
 }
 
@@ -170,6 +171,13 @@ TEST(CommandLine, WhatIsSimulatedIsAnOrdinaryRecording) {
   EXPECT_EQ(info.status, 0);
   EXPECT_THAT(info.said, HasSubstr("3 point clouds"));
   EXPECT_EQ(Lacuna(simulate).status, 0) << "what was simulated may be simulated again";
+
+  // What an interruption leaves while the recording is written.
+  std::ofstream(scan + "/recording.yaml") << "# " << kSimulated << "\n";
+  std::filesystem::remove_all(scan + "/truth");
+  const Ending again = Lacuna(simulate);
+  EXPECT_EQ(again.status, 0) << again.said;
+  EXPECT_EQ(Lacuna("validate " + scan).status, 0);
 }
 
 TEST(CommandLine, CompareWantsARunOfFit) {

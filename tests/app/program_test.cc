@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "scan/recording_writer.h"
 #include "support/ended_program.h"
 #include "support/temporary_folder.h"
 
@@ -91,17 +92,47 @@ TEST(TrialsProgram, CtrlCStopsWithTheStatusOfTheShells) {
   EXPECT_EQ(WEXITSTATUS(status), 130);
 }
 
+Ending SimulatedBend(const fs::path& motion, const fs::path& recording) {
+  return Lacuna("simulate " + Experiment("scenes/bend.yaml") + " -o " + motion.string() +
+                " --recording " + recording.string());
+}
+
+// In the second, a person writes about the measurement what the program might have written.
 TEST(Simulate, DoesNotReplaceARecordingThatWasNotSimulated) {
   const TemporaryFolder folder;
   fs::create_directories(folder / "mine");
-  std::ofstream(folder / "mine/recording.yaml") << "schema_version: 1\nname: measured\n";
-  const Ending ending =
-      Lacuna("simulate " + Experiment("scenes/bend.yaml") + " -o " + (folder / "motion").string() +
-             " --recording " + (folder / "mine").string());
+  for (const std::string text :
+       {"schema_version: 1\nname: measured\n",
+        "# Simulated annealing of the setup was used; measured in May.\nschema_version: 1\n"}) {
+    std::ofstream(folder / "mine/recording.yaml") << text;
+    const Ending ending = SimulatedBend(folder / "motion", folder / "mine");
+    EXPECT_EQ(ending.status, 2) << text;
+    EXPECT_THAT(ending.said, HasSubstr("mine: contains recording.yaml, but no recording.yaml that "
+                                       "begins with \"# Simulated by Lacuna"));
+    EXPECT_EQ(FileContent(folder / "mine/recording.yaml"), text);
+    EXPECT_FALSE(fs::exists(folder / "motion"));
+  }
+}
+
+TEST(Simulate, DoesNotReplaceMeasuredDataThatAreNotDescribedYet) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder / "mine");
+  std::ofstream(folder / "mine/markers.csv") << "time,m1_x,m1_y,m1_z\n";
+  const Ending ending = SimulatedBend(folder / "motion", folder / "mine");
   EXPECT_EQ(ending.status, 2);
-  EXPECT_THAT(ending.said, HasSubstr("mine/recording.yaml: was not written by a simulation"));
-  EXPECT_EQ(FileContent(folder / "mine/recording.yaml"), "schema_version: 1\nname: measured\n");
+  EXPECT_THAT(ending.said, HasSubstr("mine: contains markers.csv"));
+  EXPECT_EQ(FileContent(folder / "mine/markers.csv"), "time,m1_x,m1_y,m1_z\n");
+  EXPECT_FALSE(fs::exists(folder / "mine/recording.yaml"));
   EXPECT_FALSE(fs::exists(folder / "motion"));
+}
+
+// An interruption leaves a folder that the same command accepts. Here the folder of the trajectory
+// cannot be made.
+TEST(Simulate, MarksTheFolderOfTheRecordingBeforeItWritesAnythingElse) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "occupied") << "a file";
+  EXPECT_EQ(SimulatedBend(folder / "occupied/motion", folder / "made").status, 2);
+  EXPECT_EQ(FileContent(folder / "made/recording.yaml"), "# " + std::string(kSimulated) + "\n");
 }
 
 // Even where the recording that an experiment reads was simulated itself.
@@ -109,7 +140,7 @@ TEST(Simulate, DoesNotReplaceWhatTheExperimentReads) {
   const TemporaryFolder folder;
   fs::copy(Experiment("recordings/hidden_effect/recording_1"), folder / "seen");
   const std::string text = FileContent(folder / "seen/recording.yaml");
-  std::ofstream(folder / "seen/recording.yaml") << "# Simulated.\n" << text;
+  std::ofstream(folder / "seen/recording.yaml") << "# " << kSimulated << "\n" << text;
   const std::string markers = FileContent(folder / "seen/markers.csv");
   std::ofstream(folder / "e.yaml")
       << "use: " << Experiment("hidden_effect.yaml")

@@ -104,6 +104,33 @@ TEST(DecisionRules, NamesNuisancesOnlyWhereTheyStandAlone) {
       UnorderedElementsAre("a", "b", "m"));
   EXPECT_THAT(names({nothing, beside, One(Kind::kEffect, "a", 39), One(Kind::kNuisance, "n", 3)}),
               ElementsAre("a"));
+  // The effect with the nuisance (91 %) and the nuisance alone (9 %) have nothing in common.
+  std::vector<HypothesisProbability> rivals = {nothing, beside, One(Kind::kNuisance, "n", 38.4)};
+  SetPosterior(&rivals);
+  const Naming either = NameFrom(rivals);
+  EXPECT_EQ(either.level, Naming::Level::kSet);
+  EXPECT_THAT(either.names, ElementsAre("a", "n"));
+}
+
+// Of two nuisances of one name, each may stand beside the same effect.
+TEST(DecisionRules, AddsTheProbabilitiesOfRepeatedHypotheses) {
+  const auto beside = [](std::vector<std::string> names, double evidence) {
+    HypothesisProbability one = One(Kind::kEffect, "", evidence);
+    one.names = std::move(names);
+    return one;
+  };
+  std::vector<HypothesisProbability> all = {
+      One(Kind::kEffect, "b", 10.3), beside({"a", "n", "m"}, 10), beside({"a", "m", "n", "m"}, 10)};
+  all.push_back(One(Kind::kNuisance, "a", 3));
+  SetPosterior(&all);
+  EXPECT_THAT(all[0].names, ElementsAre("b"));
+  const double a = all[1].probability + all[2].probability;
+  MergeRepeated(&all);
+  ASSERT_EQ(all.size(), 3u);
+  EXPECT_THAT(all[0].names, UnorderedElementsAre("a", "n", "m"));
+  EXPECT_NEAR(all[0].probability, a, 1e-12);
+  EXPECT_NEAR(all[0].evidence, 10 + std::log(2), 1e-12);
+  EXPECT_THAT(all[1].names, ElementsAre("b"));
 }
 
 TEST(Decide, CallsNoiseAdequate) {
@@ -231,6 +258,16 @@ TEST(Decide, WeighsANuisanceAgainstAPairOnlyAfterItsFit) {
   // The fit may show that first order has overrated the pair.
   input.pairs.front().gain = 10;
   EXPECT_THAT(Decide(input).record.probabilities.front().names, ElementsAre("gravity", "slip"));
+}
+
+// The error of the model may look like an error of the measurement, too.
+TEST(Decide, CountsTheErrorOfTheModelAgainstNuisances) {
+  const SyntheticSpace synthetic;
+  DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(22) - 9 * synthetic.Of("clock"));
+  input.baseline.model_error = 20;
+  EXPECT_EQ(Decide(input).verdict, Verdict::kNuisance);
+  input.baseline.model_error = 50;
+  EXPECT_EQ(Decide(input).verdict, Verdict::kAdequate);
 }
 
 // A refit replaces the first-order evidence, and its own residual is tested.
@@ -398,6 +435,44 @@ TEST(Decide, WeighsAdoptedNuisancesAgainstEffectsInTheirPlace) {
   input.in_place_of_adopted.front().space =
       synthetic.With(SyntheticSpace::Noise(16) + 4 * synthetic.unknown.rowwise().sum());
   EXPECT_EQ(Decide(input).verdict, Verdict::kNotInLibrary);
+}
+
+// An effect beside an adopted nuisance is probable, but the nuisance alone may explain the
+// residual.
+TEST(Decide, IsAmbiguousBetweenANuisanceAloneAndAnEffectBesideIt) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(16);
+  DecisionInput input = InputOf(synthetic, noise);
+  input.adopted = {"jitter"};
+  input.adopted_evidence = 200;
+  input.refits.push_back({"drag", 3.5, synthetic.With(noise)});
+  const Decision decision = Decide(input);
+  EXPECT_THAT(decision.record.probabilities.front().names, ElementsAre("drag", "jitter"));
+  EXPECT_EQ(decision.verdict, Verdict::kAmbiguous);
+  EXPECT_THAT(decision.names, ElementsAre("drag", "jitter"));
+}
+
+// The clock of one recording was adopted, and that of another one explains what is left.
+TEST(Decide, NamesEveryNuisanceOnce) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd residual = SyntheticSpace::Noise(22) - 9 * synthetic.Of("clock");
+  DecisionInput input = InputOf(synthetic, residual);
+  input.adopted = {"clock"};
+  input.adopted_evidence = 200;
+  input.refits.push_back({"drag", -3, synthetic.With(residual)});
+  const Decision decision = Decide(input);
+  EXPECT_EQ(decision.verdict, Verdict::kNuisance);
+  EXPECT_THAT(decision.names, ElementsAre("clock"));
+  EXPECT_THAT(decision.record.adequacy.beside, ElementsAre("clock"));
+  EXPECT_TRUE(decision.record.adequacy.is_adequate);
+  const std::vector<HypothesisProbability>& all = decision.record.probabilities;
+  double sum = 0;
+  for (size_t k = 0; k < all.size(); ++k) {
+    sum += all[k].probability;
+    EXPECT_LE(std::count(all[k].names.begin(), all[k].names.end(), "clock"), 1);
+    for (size_t other = 0; other < k; ++other) EXPECT_FALSE(IsRepeated(all[k], all[other]));
+  }
+  EXPECT_NEAR(sum, 1, 1e-12);
 }
 
 // An effect in place of adopted nuisances keeps what its natural value is worth.

@@ -178,6 +178,31 @@ TEST(Diagnosis, AnEffectWithoutEvidenceExplainsNoPartOfWhatIsUnknown) {
   EXPECT_EQ(remains->effect, "drag");
 }
 
+// What is left is that of the hypothesis that was tested, which may have a nuisance, too.
+TEST(Diagnosis, StatesWhatIsLeftBesideAnEffectAndANuisance) {
+  Diagnosis diagnosis;
+  diagnosis.baseline_rms_over_sigma = 10;
+  RankedEffect& effect = diagnosis.ranking.emplace_back();
+  effect.scored.candidate.type = "drag";
+  effect.refitted = true;
+  effect.evidence = 600;
+  effect.rms_over_sigma = 3;
+  Decision decision;
+  decision.verdict = Verdict::kNotInLibrary;
+  decision.names = {"drag"};
+  decision.record.adequacy.beside = {"drag", "clock"};
+  decision.record.adequacy.rms_over_sigma = 1.5;
+  const auto left = [&] {
+    Conclude(decision, &diagnosis);
+    const auto* remains = std::get_if<ResidualRemains>(&diagnosis.reasons.at(0));
+    return remains != nullptr ? remains->rms_over_sigma : 0;
+  };
+  EXPECT_EQ(left(), 1.5);
+  // The hypothesis that was tested does not contain the effect.
+  decision.record.adequacy.beside = {"clock"};
+  EXPECT_EQ(left(), 3);
+}
+
 TEST(Diagnosis, IsRecordedWithTheVerdictAndEveryEffect) {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::kNotInLibrary;

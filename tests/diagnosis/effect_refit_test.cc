@@ -147,6 +147,18 @@ TEST(Predicts, AllowsForChanceButNotForMore) {
   EXPECT_TRUE(Predicts(with, without, kWhite));
 }
 
+// Of several comparisons, each allows for a smaller part of the false refutations.
+TEST(Predicts, AllowsForMoreChanceInEachOfSeveralTests) {
+  std::mt19937 random(1);
+  const EffectRefit without = MakeRefit(true, 1, true, &random);
+  EffectRefit with = without;
+  with.errors.unfitted_squares = 2 * 5;  // ln 100 = 4.6, ln 300 = 5.7
+  EXPECT_FALSE(Predicts(with, without, {0, 1}));
+  EXPECT_TRUE(Predicts(with, without, {0, 1}, 3));
+  with.errors.unfitted_squares = 2 * 6;
+  EXPECT_FALSE(Predicts(with, without, {0, 1}, 3));
+}
+
 // Recordings that were not fitted have no Jacobian; they count by their residuals, and less where
 // errors persist from frame to frame.
 TEST(Predicts, CountsRecordingsThatWereNotFitted) {
@@ -354,7 +366,7 @@ TEST_F(EffectRefitOfACoarseBar, IsFittedAnewBesideOtherNuisances) {
   const NoiseLevel white{0, 1};
   const RefitEvidence before = EvidenceOf(refit, white);
   const auto beside = [&](const AdoptedNuisances& nuisances) {
-    return RefitFromValues(baseline, drag, nuisances, refit.values_at_fit);
+    return RefitFromValues(baseline, &drag, nuisances, refit.values_at_fit);
   };
 
   const RefitEvidence same = EvidenceOf(beside(none_), white);
@@ -374,7 +386,7 @@ TEST_F(EffectRefitOfACoarseBar, IsFittedAnewBesideOtherNuisances) {
   // Values beyond a bound start there.
   Eigen::VectorXd beyond = refit.values_at_fit;
   beyond[refit.model.size()] = -1;  // the coefficient, which must not be negative
-  EXPECT_TRUE(RefitFromValues(baseline, drag, none_, beyond).message.empty());
+  EXPECT_TRUE(RefitFromValues(baseline, &drag, none_, beyond).message.empty());
 }
 
 // The search is given up after its first steps, as one that another effect has beaten.
@@ -389,7 +401,7 @@ TEST_F(EffectRefitOfACoarseBar, SaysWhyItHasNotConverged) {
   far.head(2) = fit_.parameters.head(2);
   far[0] *= 30;
   const EffectRefit refit =
-      RefitFromValues(baseline, drag, none_, far, -std::numeric_limits<double>::infinity());
+      RefitFromValues(baseline, &drag, none_, far, -std::numeric_limits<double>::infinity());
   EXPECT_TRUE(refit.message.empty()) << refit.message;
   EXPECT_NE(refit.unconverged.find("would not come close enough"), std::string::npos)
       << refit.unconverged;

@@ -92,5 +92,21 @@ TEST_F(Rivals, DoNotReplaceAnEffectWithoutAFamily) {
   EXPECT_EQ(Names(), (std::vector<std::string>{"mass_damping, contact"}));
 }
 
+// The search for the first effect may have failed, or never have been made.
+TEST(FromARefit, IsThePairWithAnEffectFirstThatHasARefit) {
+  RefittedRanking ranked;
+  ranked.effects = {Refitted("drag", 100), NotRefitted("branch"), NotRefitted("slip"),
+                    Refitted("gravity", 0)};
+  ranked.effects[3].refit_message = "the simulation has stopped";
+  EXPECT_EQ(FromARefit({"drag", "branch"}, ranked).value().first, "drag");
+  for (const std::string other : {"branch", "gravity"}) {
+    const PairToFit turned = FromARefit({other, "drag", 7}, ranked).value();
+    EXPECT_EQ(turned.first, "drag");
+    EXPECT_EQ(turned.further, other);
+    EXPECT_EQ(turned.lost, 7);
+  }
+  EXPECT_FALSE(FromARefit({"gravity", "slip"}, ranked).has_value());
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibration/calibration_fits.h"
+#include "diagnosis/pair_refit.h"
 #include "diagnosis/refits.h"
 #include "effects/catalogue.h"
 #include "support/held_bar.h"
@@ -149,6 +150,133 @@ TEST_F(RefitsOfABar, PayForTheVariantsThatTheyCannotReach) {
   ranked.Take(1, {of_seven, refit});
   WeighRefits({model, ranking_}, &ranked);
   EXPECT_NEAR(ranked.effects[0].evidence - ranked.effects[1].evidence, std::log(7), 1e-9);
+}
+
+// What the best refit was before has been found beside other columns.
+TEST_F(RefitsOfABar, AreComparedWithTheBestOneBesideTheSameColumns) {
+  const BaselineModel model = Model();
+  RefittedRanking ranked = RankedWith(model, {Drag("")});
+  ranked.baseline.errors.has_held_out = false;  // nothing is refuted
+  ranked.Take(0, {Drag(""), RefitDrag(model)});
+  ranked.baseline_evidence = EvidenceOf(ranked.refits[0], kWhite).all - 1000;
+  ranked.best = 0;
+  ranked.best_evidence = ranked.underrated = 1e6;
+  EffectRanking along;
+  along.adopted = ranking_.adopted;
+  along.noise = kWhite;
+  LookAlong({model, ranking_}, "drag", along, &ranked);
+  ASSERT_TRUE(ranked.best.has_value());
+  EXPECT_EQ(ranked.best_evidence,
+            EvidenceOf(ranked.refits[0], kWhite).all - ranked.baseline_evidence);
+  EXPECT_LT(ranked.best_evidence, 1e5);
+  EXPECT_EQ(ranked.underrated, ranked.best_evidence);  // first order gives no evidence
+}
+
+// A support with three times the stiffness, whose vibration is out of phase; no Gauss-Newton step
+// leads back from there.
+TEST_F(RefitsOfABar, AreNotFittedAgainWhereTheyAreFarBehind) {
+  const BaselineModel model = Model();
+  RefittedRanking ranked = RankedWith(model, {Drag(""), Support("")});
+  ranked.baseline.errors.has_held_out = false;
+  ranked.Take(0, {Drag(""), RefitDrag(model)});
+  const ScoredEffect support = Support("");
+  EffectRefit behind = Refit(model, &support, ranking_.adopted, false);
+  ASSERT_TRUE(behind.message.empty()) << behind.message;
+  behind.values_at_fit[0] *= 3;
+  behind.hypothesis.misfit.residual *= 10;
+  behind.unconverged.clear();
+  ranked.Take(1, {support, behind});
+  ranked.baseline_evidence = EvidenceOf(ranked.refits[0], kWhite).all - 1000;
+  ranked.best = 0;
+  ranked.best_evidence = 1000;
+  EffectRanking along;
+  along.adopted = {1e-6 * ranking_.misfit.jacobian.col(0), {{0, 1, false}}, 1};
+  along.noise = kWhite;
+  LookAlong({model, ranking_}, "drag", along, &ranked);
+  const EffectRefit& settled = ranked.refits[1];
+  ASSERT_TRUE(ranked.IsUsable(1)) << ranked.effects[1].refit_message;
+  EXPECT_NE(settled.unconverged.find("too far behind"), std::string::npos) << settled.unconverged;
+  EXPECT_EQ(settled.calibration.parameters, behind.calibration.parameters);
+  EXPECT_EQ(settled.hypothesis.misfit.jacobian.cols(), settled.hypothesis.parameters + 1);
+  EXPECT_EQ(settled.at_fit.misfit.jacobian.cols(), settled.at_fit.parameters + 1);
+  EXPECT_EQ(ranked.best, 0u);
+}
+
+// Each of the three comparisons of a pair allows for a third of one false refutation in 100:
+// ln 300 = 5.7, half of the difference of the squares.
+TEST_F(RefitsOfABar, ArePairsThatTheHeldOutFramesMayRefute) {
+  const BaselineModel model = Model();
+  RefittedRanking ranked = RankedWith(model, {Drag(""), Support("")});
+  ranked.baseline.errors.has_held_out = true;
+  ranked.baseline.unconverged.clear();
+  for (size_t k : {0u, 1u}) {
+    ranked.effects[k].refitted = true;
+    ranked.refits[k] = ranked.baseline;
+  }
+  FittedPair pair;
+  pair.first = "drag";
+  pair.second.scored = Support("");
+  pair.both = ranked.baseline;
+  const double same = pair.both.errors.unfitted_squares;
+  pair.both.errors.unfitted_squares = same + 2 * 5;
+  EXPECT_FALSE(Predicts(pair.both, ranked.baseline, kWhite));
+  EXPECT_TRUE(PairPredicts(pair, ranked, kWhite));
+  pair.both.errors.unfitted_squares = same + 2 * 6;
+  EXPECT_FALSE(PairPredicts(pair, ranked, kWhite));
+  pair.both.errors.unfitted_squares = same;
+  EXPECT_TRUE(PairPredicts(pair, ranked, kWhite));
+
+  // One that is refuted beside its second effect alone does not set the noise.
+  pair.both.hypothesis.residual *= 0.1;
+  pair.both.hypothesis.misfit.residual *= 0.1;
+  pair.both.at_fit.misfit.residual *= 0.1;
+  ranked.pairs = {pair};
+  const RefitContext context{model, ranking_};
+  const double with_pair = WeighRefits(context, &ranked).least_rms_over_sigma;
+  EXPECT_NEAR(with_pair, 0.1 * RmsOverSigma(ranked.baseline.hypothesis), 1e-9);
+  ranked.refits[1].errors.unfitted_squares -= 1e6;
+  EXPECT_NEAR(WeighRefits(context, &ranked).least_rms_over_sigma,
+              RmsOverSigma(ranked.baseline.hypothesis), 1e-9);
+}
+
+// What a nuisance can explain is not underrated because its fit ended early.
+TEST_F(RefitsOfABar, WithANuisanceAreNotWorseThanFirstOrderUnlessTheyHaveConverged) {
+  RefittedRanking ranked = RankedWith(Model(), {});
+  ranked.nuisances[0] = ranked.baseline;  // it explains nothing
+  ranked.nuisances[0].unconverged.clear();
+  std::vector<ScoredNuisance> nuisances(1);
+  nuisances[0].evidence = 7;
+  WeighNuisances(ranked, {kWhite, 1}, &nuisances);
+  EXPECT_NEAR(nuisances[0].refitted.value(), 0, 1e-9);
+  ranked.nuisances[0].unconverged = "the search was ended";
+  WeighNuisances(ranked, {kWhite, 1}, &nuisances);
+  EXPECT_EQ(nuisances[0].refitted.value(), 7);
+  nuisances[0].evidence = -7;
+  WeighNuisances(ranked, {kWhite, 1}, &nuisances);
+  EXPECT_NEAR(nuisances[0].refitted.value(), 0, 1e-9);
+}
+
+// The refits that a pair is compared with have the noise of the columns beside them, which may
+// differ from that of the first ranking.
+TEST_F(RefitsOfABar, OfPairsHaveTheNoiseOfTheColumnsBesideThem) {
+  const BaselineModel model = Model();
+  const EffectRefit drag = RefitDrag(model);
+  EffectRanking along;
+  along.adopted = ranking_.adopted;
+  along.misfit = ranking_.misfit;
+  along.noise = {0.05, 4};
+  along.effects = {Support("")};
+  along.nuisances.resize(1);
+  along.nuisances[0].uncertain_evidence = 2;  // so that the intervals depend on the noise
+  BaselineModel other = model;
+  other.noise = {0, 1e-4};
+  const auto fit = [&](const BaselineModel& baseline) {
+    return FitPair(baseline, Drag(""), drag, "elastic_support", along, /*is_along_first=*/false);
+  };
+  const std::optional<FittedPair> pair = fit(model), same = fit(other);
+  ASSERT_TRUE(pair && same);
+  EXPECT_EQ(pair->second.sizes.front().high, same->second.sizes.front().high);
+  EXPECT_EQ(pair->both.values_at_fit, same->both.values_at_fit);
 }
 
 }  // namespace

@@ -131,6 +131,15 @@ TEST(Headline, AddsTheProbabilitiesOfAnEffectAloneAndBesideANuisance) {
               HasSubstr("drag of the surrounding medium (90 %), or viscoelastic branch (3 %)"));
 }
 
+TEST(Headline, StatesTheProbabilityAndTheFamilyBesideAnAdoptedNuisance) {
+  ReportedModel model = Model(8.7e-4, 5.1);
+  model.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+  Believe(&*model.diagnosis, {"drag", "clock"}, 0.97);
+  model.diagnosis->decision.probabilities[0].family = EffectFamily::kLossOutside;
+  EXPECT_THAT(Headline({model}).back(),
+              HasSubstr("medium (loss outside the body; probability 97 %)."));
+}
+
 TEST(Headline, NamesTheRecordingOfTheLargestErrorWhereThereAreSeveral) {
   ReportedModel model = Model(8.7e-4, 5.1);
   Compare(&model);
@@ -235,6 +244,10 @@ TEST(Headline, AnEffectThatExplainsAPartIsNotCalledWhatIsMissing) {
       "Of all effects of the catalogue, drag of the surrounding medium explains most: 93 % of "
       "the squared error beyond the noise. 1.7 times the noise is left, which no effect "
       "explains: something else is missing, beside it or in its place.");
+  // A nuisance may have been taken beside it.
+  model.diagnosis->decision.adequacy.beside = {"drag", "clock"};
+  EXPECT_THAT(Headline({model}).at(1),
+              HasSubstr("With the clock of swing beside it, 1.7 times the noise is left"));
 }
 
 TEST(Headline, AFitThatFailedIsNotCalledAModel) {

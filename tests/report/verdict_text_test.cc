@@ -96,6 +96,15 @@ TEST(VerdictText, SaysWhichEffectsAreRefuted) {
   refuted.names = {"drag"};
   record.decision.probabilities.push_back(refuted);
   EXPECT_THAT(ExplainVerdict(record), HasSubstr("drag is refuted"));
+  // An effect that is refuted beside a nuisance, too, is refuted once.
+  refuted.names = {"drag", "time_jitter"};
+  record.decision.probabilities.push_back(refuted);
+  const std::string text = ExplainVerdict(record);
+  EXPECT_EQ(text.find("drag is refuted"), text.rfind("drag is refuted"));
+  EXPECT_THAT(text, HasSubstr("drag is refuted"));
+  // One that is refuted beside a nuisance, but not in its place, is not.
+  record.decision.probabilities[1].is_refuted = false;
+  EXPECT_THAT(ExplainVerdict(record), testing::Not(HasSubstr("refuted")));
 }
 
 TEST(VerdictText, SaysThatTheResidualIsUnexplained) {
@@ -110,6 +119,15 @@ TEST(VerdictText, SaysThatTheResidualIsUnexplained) {
   record.next_steps = {AddAndDiagnose{"drag", "gravity"}};
   EXPECT_THAT(ExplainVerdict(record), HasSubstr("beside it the evidence for gravity is 16"));
   EXPECT_THAT(DescribeNextSteps(record), HasSubstr("add drag and diagnose again"));
+}
+
+TEST(VerdictText, SaysBesideWhatTheRestWasMeasured) {
+  DiagnosisRecord record = SmallDiagnosis();
+  record.verdict = Verdict::kNotInLibrary;
+  record.reasons = {ResidualRemains{"drag", 0.9, 1.4}};
+  EXPECT_THAT(ExplainVerdict(record), HasSubstr("1.4 σ remain: it may be present"));
+  record.decision.adequacy.beside = {"drag", "time_jitter"};
+  EXPECT_THAT(ExplainVerdict(record), HasSubstr("1.4 σ remain with time_jitter beside it: it may"));
 }
 
 TEST(VerdictText, SuggestsAnExperimentOrACheck) {

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <string>
+
 #include "geometry/mesh_io.h"
 #include "scan/recording.h"
 #include "support/box_mesh.h"
@@ -89,8 +92,14 @@ TEST(RecordingWriter, WritesWhatIsReadBack) {
 TEST(RecordingWriter, ASimulatedRecordingIsRecognised) {
   const TemporaryFolder folder;
   EXPECT_FALSE(IsSimulatedRecording(folder / "absent"));
+  MarkAsSimulated(folder.Path());
+  EXPECT_TRUE(IsSimulatedRecording(folder.Path()));
+  for (const std::string behind : {" ", " Or not."}) {
+    std::ofstream(folder / "recording.yaml") << "# " << kSimulated << behind << "\nname: a\n";
+    EXPECT_FALSE(IsSimulatedRecording(folder.Path())) << behind;
+  }
   MarkerRecording written;
-  written.comment = std::string(kSimulated) + " from bar.yaml.";
+  written.comment = std::string(kSimulated) + "\nPlayed from bar.yaml.";
   written.reference = folder / "object.msh";
   written.times = {0};
   written.markers = {{"m"}, Eigen::Matrix3Xd::Zero(3, 1), {Eigen::Matrix3Xd::Zero(3, 1)}};
