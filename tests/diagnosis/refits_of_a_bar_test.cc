@@ -172,9 +172,9 @@ TEST_F(RefitsOfABar, AreComparedWithTheBestOneBesideTheSameColumns) {
   EXPECT_EQ(ranked.underrated, ranked.best_evidence);  // first order gives no evidence
 }
 
-// A support with three times the stiffness, whose vibration is out of phase; no Gauss-Newton step
-// leads back from there.
-TEST_F(RefitsOfABar, AreNotFittedAgainWhereTheyAreFarBehind) {
+// A refit that seems to be far behind, here a support with three times the stiffness, is settled
+// beside the new columns, and fitted again if that brings it near.
+TEST_F(RefitsOfABar, AreFittedAgainWhereTheyOnlySeemedFarBehind) {
   const BaselineModel model = Model();
   RefittedRanking ranked = RankedWith(model, {Drag(""), Support("")});
   ranked.baseline.errors.has_held_out = false;
@@ -193,13 +193,13 @@ TEST_F(RefitsOfABar, AreNotFittedAgainWhereTheyAreFarBehind) {
   along.adopted = {1e-6 * ranking_.misfit.jacobian.col(0), {{0, 1, false}}, 1};
   along.noise = kWhite;
   LookAlong({model, ranking_}, "drag", along, &ranked);
-  const EffectRefit& settled = ranked.refits[1];
+  const EffectRefit& again = ranked.refits[1];
   ASSERT_TRUE(ranked.IsUsable(1)) << ranked.effects[1].refit_message;
-  EXPECT_NE(settled.unconverged.find("too far behind"), std::string::npos) << settled.unconverged;
-  EXPECT_EQ(settled.calibration.parameters, behind.calibration.parameters);
-  EXPECT_EQ(settled.hypothesis.misfit.jacobian.cols(), settled.hypothesis.parameters + 1);
-  EXPECT_EQ(settled.at_fit.misfit.jacobian.cols(), settled.at_fit.parameters + 1);
-  EXPECT_EQ(ranked.best, 0u);
+  EXPECT_EQ(again.unconverged, "");
+  EXPECT_NE(again.calibration.parameters, behind.calibration.parameters);
+  EXPECT_EQ(again.hypothesis.misfit.jacobian.cols(), again.hypothesis.parameters + 1);
+  EXPECT_EQ(again.at_fit.misfit.jacobian.cols(), again.at_fit.parameters + 1);
+  EXPECT_EQ(ranked.best, 1u);  // the support explains more than drag
 }
 
 // Each of the three comparisons of a pair allows for a third of one false refutation in 100:
