@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 #include <system_error>
+#include <vector>
 
 #include "app/commands.h"
 #include "core/atomic_file.h"
@@ -160,14 +161,16 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
   const auto own_folder = [&](const std::filesystem::path& folder, const std::string& name) {
     return several ? folder / FileNameFor(name) : folder;
   };
-  for (const PredictedRecording& item : study.recordings) {
-    if (arguments.recording.empty()) break;
-    const std::filesystem::path folder = own_folder(arguments.recording, item.name);
-    RefuseFolderOfInputs(folder, study);
-    RefuseMeasuredFiles(folder);
+  if (!arguments.recording.empty()) {
+    std::vector<std::filesystem::path> written;
+    for (const PredictedRecording& item : study.recordings)
+      written.push_back(own_folder(arguments.recording, item.name));
+    for (const std::filesystem::path& folder : written) {
+      RefuseFolderOfInputs(folder, study);
+      RefuseMeasuredFiles(folder);
+    }
+    for (const std::filesystem::path& folder : written) ReserveFolder(folder);
   }
-  for (const PredictedRecording& item : study.recordings)
-    if (!arguments.recording.empty()) ReserveFolder(own_folder(arguments.recording, item.name));
   const TetMesh mesh = MakeReferenceBody(study).mesh;
   const auto body = std::make_shared<const Body>(MakeBody(mesh, study.density));
   for (size_t r = 0; r < study.recordings.size(); ++r) {

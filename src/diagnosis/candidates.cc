@@ -385,24 +385,6 @@ Eigen::VectorXd ValuesOf(const EffectCard& card, const Variant& variant,
   return values;
 }
 
-// Whether a refit of one variant may end at another one of the same effect.
-bool MayReach(const CandidateEffect& from, const CandidateEffect& to) {
-  // Of the scale of a parameter. The places along a body are never exactly on a line.
-  constexpr double kSame = 0.01;
-  const std::vector<ParameterCard>& parameters = from.effect->Card().parameters;
-  const Eigen::VectorXd start = from.effect->Parameters(), end = to.effect->Parameters();
-  for (size_t k = 0; k < parameters.size(); ++k) {
-    const double there = end[static_cast<Eigen::Index>(k)];
-    const double away = std::abs(there - start[static_cast<Eigen::Index>(k)]);
-    if (away <= kSame * PlausibleScale(parameters[k])) continue;
-    if (!IsMovedByRefit(from, k)) return false;
-    const auto range = from.known.find(parameters[k].name);
-    if (range != from.known.end() && (there < range->second.min || there > range->second.max))
-      return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 bool AreNeighbours(const VariantPosition& a, const VariantPosition& b) {
@@ -416,26 +398,6 @@ bool AreNeighbours(const VariantPosition& a, const VariantPosition& b) {
 
 double PlausibleScale(const ParameterCard& card) {
   return std::max(std::abs(card.plausible_min), std::abs(card.plausible_max));
-}
-
-bool IsMovedByRefit(const CandidateEffect& candidate, size_t parameter) {
-  const ParameterCard& card = candidate.effect->Card().parameters[parameter];
-  if (candidate.replaces_material || card.setting) return false;
-  const auto known = candidate.known.find(card.name);
-  if (known != candidate.known.end() && known->second.IsHeld()) return false;
-  return !candidate.IsPilot() || candidate.refined.contains(card.name);
-}
-
-double ReachableShare(const CandidateEffect& candidate,
-                      const std::vector<CandidateEffect>& candidates) {
-  size_t variants = 0, reached = 0;
-  for (const CandidateEffect& other : candidates) {
-    if (other.type != candidate.type) continue;
-    ++variants;
-    reached += MayReach(candidate, other);
-  }
-  CHECK_GT(reached, 0u) << candidate.type << " is not among the candidates";
-  return static_cast<double>(reached) / static_cast<double>(variants);
 }
 
 std::vector<CandidateAmount> AmountsOf(const CandidateEffect& candidate) {

@@ -63,15 +63,6 @@ struct CandidateEffect {
 // The largest plausible absolute value of a parameter, SI: the scale of its prior.
 double PlausibleScale(const ParameterCard& card);
 
-// Whether a refit of the candidate moves this parameter of its effect (an index of the card).
-bool IsMovedByRefit(const CandidateEffect& candidate, size_t parameter);
-
-// The share of the variants of the candidate's effect among `candidates`, itself included, that a
-// refit of it may end at: those that differ from it in parameters only that the refit moves. It
-// does not move a setting, such as the side of a body on which a support lies.
-double ReachableShare(const CandidateEffect& candidate,
-                      const std::vector<CandidateEffect>& candidates);
-
 // One of the numbers that make the size of a candidate.
 struct CandidateAmount {
   std::string name, unit;

@@ -87,8 +87,7 @@ bool IsElasticityLaw(const std::string& effect) {
 const WeighedPair* FindPair(const DecisionInput& input, const std::string& a,
                             const std::string& b) {
   for (const WeighedPair& pair : input.pairs)
-    if ((pair.first == a && pair.second == b) || (pair.first == b && pair.second == a))
-      return &pair;
+    if (IsSamePair(pair.first, pair.second, a, b)) return &pair;
   return nullptr;
 }
 
@@ -96,9 +95,7 @@ const WeighedPair* FindPair(const DecisionInput& input, const std::string& a,
 // could not be fitted, or that the held-out frames have refuted, is not weighed to first order
 // again.
 bool MayBeBoth(const DecisionInput& input, const std::string& a, const std::string& b) {
-  if (a == b || (IsElasticityLaw(a) && IsElasticityLaw(b))) return false;
-  for (const auto& [first, second] : input.failed_pairs)
-    if ((first == a && second == b) || (first == b && second == a)) return false;
+  if (a == b || (IsElasticityLaw(a) && IsElasticityLaw(b)) || HasFailed(input, a, b)) return false;
   const WeighedPair* fitted = FindPair(input, a, b);
   return fitted == nullptr || fitted->predicts;
 }
@@ -196,6 +193,11 @@ const WeighedRefit* FindRefit(const DecisionInput& input, const std::string& eff
   for (const WeighedRefit& refit : input.refits)
     if (refit.effect == effect) return &refit;
   return nullptr;
+}
+
+bool HasFailed(const DecisionInput& input, const std::string& a, const std::string& b) {
+  return std::any_of(input.failed_pairs.begin(), input.failed_pairs.end(),
+                     [&](const auto& pair) { return IsSamePair(pair[0], pair[1], a, b); });
 }
 
 double EvidenceOfAdopted(const DecisionInput& input) {

@@ -26,6 +26,9 @@ namespace lacuna {
 // The refit with this effect beside the adopted nuisances; null: there is none.
 const WeighedRefit* FindRefit(const DecisionInput& input, const std::string& effect);
 
+// Whether the model could not be fitted with these two effects.
+bool HasFailed(const DecisionInput& input, const std::string& a, const std::string& b);
+
 // What the adopted nuisances add to the evidence of every hypothesis: their own evidence, and the
 // prior probability that there is such a nuisance. 0 where there are none.
 double EvidenceOfAdopted(const DecisionInput& input);

@@ -22,6 +22,12 @@ struct WeighedRefit {
   bool predicts = true;   // as Predicts (effect_refit.h) says
 };
 
+// Whether a and b are these two effects, in either order.
+inline bool IsSamePair(const std::string& first, const std::string& second, const std::string& a,
+                       const std::string& b) {
+  return (first == a && second == b) || (first == b && second == a);
+}
+
 // The model fitted again with two effects at once.
 struct WeighedPair {
   std::string first, second;

@@ -113,6 +113,7 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
   for (const FittedPair& pair : ranked.pairs)
     if (std::optional<WeighedPair> weighed = Weigh(pair, ranked, ranking, noise.level))
       input.pairs.push_back(*std::move(weighed));
+  input.failed_pairs = ranked.failed_pairs;
   for (const ScoredNuisance& nuisance : diagnosis.nuisances) {
     const std::string& name = nuisance.candidate.card.name;
     if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model &&

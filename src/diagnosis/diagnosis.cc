@@ -99,7 +99,7 @@ std::vector<std::string> EffectsOfInterest(const Decision& decision, const Decis
 // their place.
 void DecideUpon(const RefitContext& context, const DiagnosisOptions& options,
                 RefittedRanking* ranked, RefitNoise* noise, Diagnosis* diagnosis) {
-  OpenDecision open{context, options.without, ranked, noise, diagnosis, {}, {}};
+  OpenDecision open{context, options.without, ranked, noise, diagnosis, {}};
   open.DecideAgain();
   RankAlongBest(&open);
   FitRivalPairs(&open);

@@ -13,6 +13,7 @@
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/recording_agreement.h"
+#include "diagnosis/refit_reach.h"
 #include "diagnosis/thresholds.h"
 #include "diagnosis/unknown_force.h"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/refit_reach.h"
 #include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "diagnosis/combinations.h"
 #include "diagnosis/decision_maker.h"
 #include "diagnosis/decision_rules.h"
 #include "diagnosis/pair_refit.h"
@@ -39,12 +40,6 @@ bool IsFitted(const std::vector<FittedPair>& pairs, const std::string& a, const 
                      [&](const FittedPair& one) { return one.IsOf(a, b); });
 }
 
-bool HasFailed(const OpenDecision& open, const std::string& a, const std::string& b) {
-  return std::any_of(open.failed_pairs.begin(), open.failed_pairs.end(), [&](const auto& pair) {
-    return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
-  });
-}
-
 // Ranks everything anew along the motion of the refit with this effect. Returns whether there is
 // such a refit.
 bool RankAlongRefit(const std::string& effect, OpenDecision* open) {
@@ -69,7 +64,7 @@ void AddPair(const PairToFit& wanted, OpenDecision* open) {
       FitPair(open->context.model, ranked.effects[*k].scored, ranked.refits[*k], wanted.further,
               *ranked.along, wanted.first == ranked.along_type);
   if (!pair) {
-    open->failed_pairs.push_back({wanted.first, wanted.further});
+    ranked.failed_pairs.push_back({wanted.first, wanted.further});
     open->DecideAgain();
     return;
   }
@@ -87,7 +82,6 @@ void OpenDecision::DecideAgain() {
   for (;;) {
     WeighNuisances(*ranked, *noise, &diagnosis->nuisances);
     diagnosis->decision_input = MakeDecisionInput(context, *ranked, *noise, *diagnosis);
-    diagnosis->decision_input.failed_pairs = failed_pairs;
     decision = Decide(diagnosis->decision_input);
     const int before = ranked->count;
     RefitAll(context, WithoutRefit(decision, *ranked), ranked);
@@ -121,6 +115,7 @@ void FitRivalPairs(OpenDecision* open) {
   for (int fits = 0; ranked.along && fits <= kMostRivalPairs; ++fits) {
     const HypothesisProbability best = open->Best();
     if (best.kind != Kind::kPair) break;
+    const DecisionInput& input = open->diagnosis->decision_input;
     std::vector<PairToFit> next;
     if (!IsFitted(ranked.pairs, best.names[0], best.names[1])) {
       // Another pair has become the most probable one.
@@ -128,13 +123,12 @@ void FitRivalPairs(OpenDecision* open) {
         next.push_back(*pair);
     } else if (fits < kMostRivalPairs) {
       const double hopeless = DecisiveLead(best.evidence);
-      for (const PairToFit& rival :
-           RivalsOf(best, ranked, open->diagnosis->decision_input.families))
+      for (const PairToFit& rival : RivalsOf(best, ranked, input.families))
         if (const auto pair = FromARefit(rival, ranked); pair && pair->lost <= hopeless)
           next.push_back(*pair);
     }
     std::erase_if(next,
-                  [&](const PairToFit& one) { return HasFailed(*open, one.first, one.further); });
+                  [&](const PairToFit& one) { return HasFailed(input, one.first, one.further); });
     if (next.empty()) break;
     AddPair(next.front(), open);
   }

@@ -3,7 +3,6 @@
 #ifndef LACUNA_DIAGNOSIS_OPEN_DECISION_H_
 #define LACUNA_DIAGNOSIS_OPEN_DECISION_H_
 
-#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -34,7 +33,6 @@ struct OpenDecision {
   RefitNoise* noise;
   Diagnosis* diagnosis;  // its decision_input and nuisances are set
   Decision decision;
-  std::vector<std::array<std::string, 2>> failed_pairs;
 
   const HypothesisProbability& Best() const { return decision.record.probabilities.front(); }
   // Decides upon what has been fitted, and refits what the decision would state without a refit,

@@ -9,12 +9,14 @@
 #ifndef LACUNA_DIAGNOSIS_REFITS_H_
 #define LACUNA_DIAGNOSIS_REFITS_H_
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "diagnosis/decision_input.h"
 #include "diagnosis/diagnosis_result.h"
 #include "diagnosis/effect_refit.h"
 #include "diagnosis/variant_refit.h"
@@ -31,8 +33,7 @@ struct FittedPair {
   Eigen::VectorXd values_of_first;  // in `both`, of the parameters of the model with it alone
 
   bool IsOf(const std::string& a, const std::string& b) const {
-    const std::string& other = second.scored.candidate.type;
-    return (first == a && other == b) || (first == b && other == a);
+    return IsSamePair(first, second.scored.candidate.type, a, b);
   }
 };
 
@@ -55,8 +56,9 @@ struct RefittedRanking {
   // hypotheses, with the baseline's columns.
   std::string along_type;
   std::shared_ptr<const EffectRanking> along, along_for_others;
-  std::vector<FittedPair> pairs;            // beside the same columns
-  std::map<size_t, EffectRefit> nuisances;  // fits with a nuisance, by its index
+  std::vector<FittedPair> pairs;                         // beside the same columns
+  std::vector<std::array<std::string, 2>> failed_pairs;  // could not be fitted
+  std::map<size_t, EffectRefit> nuisances;               // fits with a nuisance, by its index
 
   bool IsUsable(size_t effect) const { return effects[effect].HasUsableRefit(); }
   // The index of the effect of this type; nothing if it has no usable refit.

@@ -22,7 +22,7 @@ struct ScoredVariant {
   CandidateEffect candidate;
   Score score;
   Eigen::VectorXd expected_values;  // of the problem's parameters, with the effect in the model
-  // −ln of ReachableShare() (candidates.h): what the choice of this variant among those of its
+  // −ln of ReachableShare() (refit_reach.h): what the choice of this variant among those of its
   // effect costs the evidence of a refit. A refit pays for the parameters that it moves through
   // their priors.
   double selection_penalty = 0;

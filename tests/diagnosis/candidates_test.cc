@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "diagnosis/refit_reach.h"
 #include "effects/catalogue.h"
 #include "support/box_mesh.h"
 

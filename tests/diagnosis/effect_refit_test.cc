@@ -299,6 +299,14 @@ class EffectRefitOfACoarseBar : public OfACoarseBar {
     none_ = {Eigen::MatrixXd(misfit_.residual.size(), 0), {}, 0};
   }
 
+  ScoredEffect Drag() const {
+    ScoredEffect drag;
+    drag.candidate = {"drag", "", MakeEffect("drag", {{"coefficient", 1}}), {0}};
+    drag.score.size = Eigen::VectorXd::Constant(1, 1);
+    drag.expected_values = fit_.parameters;
+    return drag;
+  }
+
   Calibration fit_;
   LinearisedMisfit misfit_;
   AdoptedNuisances none_;
@@ -356,10 +364,7 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithoutTheEffect) {
 // Columns that were computed along another motion take their part of the residual, and the
 // parameters follow. The same columns change little.
 TEST_F(EffectRefitOfACoarseBar, IsFittedAnewBesideOtherNuisances) {
-  ScoredEffect drag;
-  drag.candidate = {"drag", "", MakeEffect("drag", {{"coefficient", 1}}), {0}};
-  drag.score.size = Eigen::VectorXd::Constant(1, 1);
-  drag.expected_values = fit_.parameters;
+  const ScoredEffect drag = Drag();
   const BaselineModel baseline{*problem_, fit_.parameters, misfit_, &progress_};
   const EffectRefit refit = Refit(baseline, &drag, none_, false);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
@@ -391,10 +396,7 @@ TEST_F(EffectRefitOfACoarseBar, IsFittedAnewBesideOtherNuisances) {
 
 // The search is given up after its first steps, as one that another effect has beaten.
 TEST_F(EffectRefitOfACoarseBar, SaysWhyItHasNotConverged) {
-  ScoredEffect drag;
-  drag.candidate = {"drag", "", MakeEffect("drag", {{"coefficient", 1}}), {0}};
-  drag.score.size = Eigen::VectorXd::Constant(1, 1);
-  drag.expected_values = fit_.parameters;
+  const ScoredEffect drag = Drag();
   const BaselineModel baseline{*problem_, fit_.parameters, misfit_, &progress_};
   const ExtendedProblem extended(baseline, &drag, none_);
   Eigen::VectorXd far = extended.problem().Start();
