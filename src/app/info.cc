@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 
 #include "app/commands.h"
@@ -74,7 +75,10 @@ void DescribeRun(const std::filesystem::path& folder) {
   fmt::print("  recording {}, {} frames, {} nodes, {} tetrahedra of order {}\n", record.recording,
              record.frames.size(), record.mesh.node_count, record.mesh.tet_count,
              record.mesh.order);
-  fmt::print("  |D_anim| {:.4g} m; usable: {}\n", record.animation_residual,
+  fmt::print("  |D_anim| {}; usable: {}\n",
+             std::isnan(record.animation_residual)
+                 ? "not measured"
+                 : fmt::format("{:.4g} m", record.animation_residual),
              record.IsUsable() ? "yes" : "no");
   for (const auto& [name, value] : record.measures) fmt::print("  {:30} {:.6g}\n", name, value);
   for (const std::string& warning : record.warnings) fmt::print("  warning: {}\n", warning);

@@ -17,6 +17,25 @@ std::string Length(double metres) {
   return std::isnan(metres) ? "-" : fmt::format("{:.3f} mm", 1e3 * metres);
 }
 
+// A number of metres with four digits.
+std::string Metres(double metres) {
+  return std::isnan(metres) ? "-" : fmt::format("{:.4g}", metres);
+}
+
+// |D_anim|, and its mean per point in mm if `with_mean` and relative to the object's size.
+std::string AnimationResiduals(const RunRecord& record, bool with_mean) {
+  if (std::isnan(record.relative_animation_residual)) return "|D_anim| (Eq. 2)  not measured";
+  const std::string sum = std::isnan(record.animation_residual)
+                              ? "not measured in some frames; over the others"
+                              : Metres(record.animation_residual) + " m,";
+  const std::string mean =
+      with_mean ? fmt::format(" {} per point and frame,",
+                              Length(record.relative_animation_residual * record.object_size))
+                : "";
+  return fmt::format("|D_anim| (Eq. 2)  {}{} {:.3f} % of the object's size", sum, mean,
+                     100 * record.relative_animation_residual);
+}
+
 void PrintFrames(const RunRecord& record) {
   fmt::print(
       "\n  frame    time s   |D| m      |D| per point   scan to surface: mean   max"
@@ -26,18 +45,15 @@ void PrintFrames(const RunRecord& record) {
     const std::string force =
         fmt::format("{:.3g}{}", frame.force_resultant.norm(),
                     std::isnan(deviation) ? "" : fmt::format(" ({:.2g})", deviation));
-    fmt::print("  {:5} {:9.3f}   {:<9.4g}  {:>13}   {:>21} {:>9}   {:>17}   {:>7}  {}\n",
-               frame.frame, frame.time, frame.residual, Length(frame.residual_mean),
+    fmt::print("  {:5} {:9.3f}   {:<9}  {:>13}   {:>21} {:>9}   {:>17}   {:>7}  {}\n", frame.frame,
+               frame.time, Metres(frame.residual), Length(frame.residual_mean),
                Length(frame.surface_distance_mean), Length(frame.surface_distance_max), force,
                frame.solver.iterations, frame.solver.status);
   }
 }
 
 void PrintSummary(const RunRecord& record, const std::filesystem::path& output) {
-  fmt::print(
-      "\n|D_anim| (Eq. 2)  {:.4g} m, {} per point and frame, {:.3f} % of the object's size\n",
-      record.animation_residual, Length(record.relative_animation_residual * record.object_size),
-      100 * record.relative_animation_residual);
+  fmt::print("\n{}\n", AnimationResiduals(record, /*with_mean=*/true));
   for (const auto& [name, value] : record.measures) fmt::print("{:32} {:.6g}\n", name, value);
   for (const std::string& warning : record.warnings) fmt::print("warning: {}\n", warning);
   fmt::print(
@@ -50,8 +66,7 @@ void PrintSummary(const RunRecord& record, const std::filesystem::path& output) 
 }
 
 void PrintShortSummary(const RunRecord& record, const std::filesystem::path& output) {
-  fmt::print("\n|D_anim| (Eq. 2)  {:.4g} m, {:.3f} % of the object's size; {} frames\n",
-             record.animation_residual, 100 * record.relative_animation_residual,
+  fmt::print("\n{}; {} frames\n", AnimationResiduals(record, /*with_mean=*/false),
              record.frames.size());
   for (const std::string& warning : record.warnings) fmt::print("warning: {}\n", warning);
   fmt::print("The run was written to {}\n", output.string());

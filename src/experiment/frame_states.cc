@@ -6,8 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/json_file.h"
 #include "core/npy.h"
+#include "experiment/grip_tracks.h"
 #include "geometry/nearest.h"
 
 namespace lacuna {
@@ -17,18 +22,38 @@ constexpr double kNotSeen = std::numeric_limits<double>::quiet_NaN();
 
 bool IsHeldOut(Eigen::Index row, int every) { return every > 0 && row % every == every - 1; }
 
+// Flags, one per row of a frame, of the markers that a grip follows.
+std::vector<char> FollowedByGrips(const Recording& recording, Eigen::Index rows) {
+  std::vector<char> followed(static_cast<size_t>(rows), 0);
+  for (const RecordedGrip& grip : recording.object.grips)
+    for (const int marker : MarkersOf(grip, recording)) followed[static_cast<size_t>(marker)] = 1;
+  return followed;
+}
+
 // Splits tracked points into those that may be used and those that are held out.
-void SplitTracked(const Frame& frame, int hold_out_every, FrameState* state) {
+void SplitTracked(const Recording& recording, const Frame& frame, int hold_out_every,
+                  FrameState* state) {
   const Eigen::Matrix3Xd points = PointsByRow(frame);
+  const std::vector<char> followed = FollowedByGrips(recording, points.cols());
   std::vector<Eigen::Index> used, held_out;
-  for (Eigen::Index row = 0; row < points.cols(); ++row)
-    (IsHeldOut(row, hold_out_every) ? held_out : used).push_back(row);
+  for (Eigen::Index row = 0; row < points.cols(); ++row) {
+    const bool is_held_out = IsHeldOut(row, hold_out_every) && !followed[static_cast<size_t>(row)];
+    (is_held_out ? held_out : used).push_back(row);
+  }
   state->tracked = points(Eigen::all, used);
   state->held_out = points(Eigen::all, held_out);
   std::vector<Eigen::Index> seen;
   for (Eigen::Index j = 0; j < state->tracked.cols(); ++j)
     if (state->tracked.col(j).allFinite()) seen.push_back(j);
   state->cloud.points = state->tracked(Eigen::all, seen);
+}
+
+std::string NoteOnOrientation(const Orientation& orientation) {
+  if (orientation.doubtful_component_count == 0) return "";
+  return fmt::format(
+      "which side is outside is uncertain for {} of {} connected parts of the points; `sensors` "
+      "under `frames` of the recording would decide it",
+      orientation.doubtful_component_count, orientation.component_count);
 }
 
 void RefuseFarSurface(const FrameState& state, const std::string& where) {
@@ -72,8 +97,9 @@ FrameState MakeFrameState(const Recording& recording, int frame_number,
   const Frame frame = LoadFrame(recording, frame_number);
   FrameState state;
   state.time = frame.time;
+  state.notes = frame.notes;
   if (!IsScan(recording)) {
-    SplitTracked(frame, options.hold_out_every, &state);
+    SplitTracked(recording, frame, options.hold_out_every, &state);
     return state;
   }
   if (frame.triangles.cols() > 0) {
@@ -82,19 +108,24 @@ FrameState MakeFrameState(const Recording& recording, int frame_number,
     return state;
   }
   const std::string where = fmt::format("{}: frame {}", recording.file.string(), frame_number);
-  state.cloud = NamingWhere(
-      where, [&] { return FilterCloud(frame.cloud, frame.sensors, options.filter).cloud; });
+  const FilterResult filtered =
+      NamingWhere(where, [&] { return FilterCloud(frame.cloud, frame.sensors, options.filter); });
+  state.cloud = filtered.cloud;
+  if (std::string note = NoteOnOrientation(filtered.orientation); !note.empty())
+    state.notes.push_back(std::move(note));
   if (!options.surfaces) return state;
   const Surface surface =
       NamingWhere(where, [&] { return ReconstructSurface(state.cloud, options.surface); });
   if (!surface.IsUsable()) throw InputError(where + ": no closed surface: " + surface.message);
   state.surface = surface.mesh;
+  for (const std::string& note : surface.notes) state.notes.push_back("the surface: " + note);
   RefuseFarSurface(state, where);
   return state;
 }
 
 void SaveFrameStates(const std::vector<FrameState>& states, const std::filesystem::path& folder) {
   Eigen::VectorXd times(states.size());
+  nlohmann::json notes = nlohmann::json::array();
   for (size_t k = 0; k < states.size(); ++k) {
     const FrameState& state = states[k];
     times[static_cast<Eigen::Index>(k)] = state.time;
@@ -104,13 +135,23 @@ void SaveFrameStates(const std::vector<FrameState>& states, const std::filesyste
     WriteNpyIntegers(FrameFile(folder, k, "triangles"), state.surface.triangles.cast<int64_t>());
     WriteNpy(FrameFile(folder, k, "tracked"), state.tracked);
     WriteNpy(FrameFile(folder, k, "held_out"), state.held_out);
+    notes.push_back(state.notes);
   }
+  WriteFileAtomically(folder / "notes.json",
+                      notes.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   WriteNpy(folder / "times.npy", times);
 }
 
 std::vector<FrameState> ReadFrameStates(const std::filesystem::path& folder) {
   const Eigen::MatrixXd times = ReadNpyMatrix(folder / "times.npy");
   std::vector<FrameState> states(static_cast<size_t>(times.size()));
+  using Notes = std::vector<std::vector<std::string>>;
+  const Notes notes = ReadJsonFile(
+      folder / "notes.json", [](const nlohmann::json& content) { return content.get<Notes>(); });
+  if (notes.size() != states.size())
+    throw InputError(SourcePosition{(folder / "notes.json").string()},
+                     fmt::format("has the notes of {} frames; expected those of {}", notes.size(),
+                                 states.size()));
   for (size_t k = 0; k < states.size(); ++k) {
     states[k].time = times(static_cast<Eigen::Index>(k));
     states[k].cloud.points = ReadPoints(FrameFile(folder, k, "points"));
@@ -119,13 +160,14 @@ std::vector<FrameState> ReadFrameStates(const std::filesystem::path& folder) {
     states[k].surface.triangles = ReadNpyIntegers(FrameFile(folder, k, "triangles")).cast<int>();
     states[k].tracked = ReadPoints(FrameFile(folder, k, "tracked"));
     states[k].held_out = ReadPoints(FrameFile(folder, k, "held_out"));
+    states[k].notes = notes[k];
   }
   return states;
 }
 
 double EstimateNoise(const Eigen::Matrix3Xd& points) {
-  constexpr int kNeighbours = 16;
-  if (points.cols() < kNeighbours + 1) return 0;
+  constexpr int kNeighbours = kFewestNoisePoints - 1;
+  if (points.cols() < kFewestNoisePoints) return 0;
   const PointHits near = PointSearch(points).Nearest(points, kNeighbours);
   std::vector<double> deviation(static_cast<size_t>(points.cols()));
   for (Eigen::Index j = 0; j < points.cols(); ++j) {
@@ -134,7 +176,7 @@ double EstimateNoise(const Eigen::Matrix3Xd& points) {
     local.colwise() -= local.rowwise().mean().eval();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(local * local.transpose(),
                                                               Eigen::EigenvaluesOnly);
-    // A plane has three of the sixteen degrees of freedom.
+    // A plane has three of the degrees of freedom.
     deviation[static_cast<size_t>(j)] =
         std::sqrt(std::max(0.0, axes.eigenvalues()[0]) / (kNeighbours - 3));
   }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "geometry/point_cloud.h"
@@ -23,6 +24,8 @@ struct FrameState {
   // Held-out points are in `held_out` and neither in `cloud` nor in `tracked`.
   Eigen::Matrix3Xd tracked;
   Eigen::Matrix3Xd held_out;
+  // Doubts about the frame's files, points and surface, and repairs of the surface, a clause each.
+  std::vector<std::string> notes;
 };
 
 // The points of a tracked frame by row, 3 × rows, m; NaN where a row was not seen.
@@ -37,8 +40,11 @@ struct FrameStateOptions {
   FilterOptions filter;
   SurfaceOptions surface;
   bool surfaces = true;  // reconstruct a Poisson surface; otherwise the points represent the state
-  int hold_out_every = 0;  // hold out every k-th tracked point; 0: none
+  // Hold out every k-th tracked point; 0: none. Markers that a grip follows are never held out,
+  // because they move the model.
+  int hold_out_every = 0;
 };
+
 // A surface or model farther than this from the points of its own frame, as a fraction of its size,
 // is no description of them. Scanners err by less than a hundredth of the size, and a model that
 // follows by less than a twentieth, while wrong units, intrinsics and poses lead to a quarter and
@@ -49,13 +55,17 @@ inline constexpr double kFarFromScan = 0.1;
 // be read, has no closed surface, or has one whose mean distance from the points is kFarFromScan.
 FrameState MakeFrameState(const Recording& recording, int frame, const FrameStateOptions& options);
 
-// The files of a run directory: arrays in .npy format, one set per frame.
+// The files of a run directory: arrays in .npy format, one set per frame, and notes.json.
 void SaveFrameStates(const std::vector<FrameState>& states, const std::filesystem::path& folder);
 std::vector<FrameState> ReadFrameStates(const std::filesystem::path& folder);
 
+// EstimateNoise compares each point with all but one of so many points around it.
+inline constexpr int kFewestNoisePoints = 17;
+
 // The standard deviation of a cloud's points (3 × n, m) about their own surface, m: the median over
 // the points of the rms distance of their neighbours from the plane through them, corrected for the
-// degrees of freedom of the plane. Curvature increases it.
+// degrees of freedom of the plane. Curvature increases it. 0 for fewer than
+// kFewestNoisePoints.
 double EstimateNoise(const Eigen::Matrix3Xd& points);
 
 }  // namespace lacuna

@@ -60,20 +60,28 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
             track->span < 0 ? "have no marker_places"
                             : "do not span a plane: three or more are needed, not on a line"));
     }
+    if (grip.motion == GripMotion::kGiven)
+      track->since = grip.times[0];
+    else
+      track->places = {{recording.times.front(), track->rest}};
     tracks_.push_back(track);
     model->grips.push_back({track->nodes,
                             [track](double time) -> Eigen::Matrix3Xd {
                               if (track->grip.motion == GripMotion::kGiven)
-                                return MotionAt(track->grip, time) * track->rest;
+                                return MotionAt(track->grip, time, track->since) * track->rest;
                               return Interpolated(track->places, time);
                             },
                             grip.axes});
   }
-  Begin(recording.times.front());
 }
 
 void GripTracks::Begin(double time) {
-  for (const auto& track : tracks_) track->places = {{time, track->rest}};
+  for (const auto& track : tracks_) {
+    if (track->grip.motion == GripMotion::kGiven)
+      track->since = time;
+    else
+      track->places = {{time, track->rest}};
+  }
 }
 
 const RecordedGrip* GripTracks::Extend(double time, const Eigen::Matrix3Xd& before,

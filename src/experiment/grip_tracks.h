@@ -24,12 +24,15 @@ class GripTracks {
   // when their nodes contradict each other (held_parts.h).
   GripTracks(const Recording& recording, const TetMesh& reference, Model* model);
 
-  // Places all grips at their rest positions at this time.
+  // Declares the body undeformed at this time (s): all grips are at their rest positions there, and
+  // the motion along a given path counts from there. Until then they are at rest in the first frame
+  // of the recording, and a path counts from its first row.
   void Begin(double time);
   // Adds the positions of the grips at `time`. `before` and `moved` (3 × nodes) are the model's
   // nodes and the places to which the registered motion of the scan carries them; `markers` (3 × m)
-  // are the frame's markers. A grip is not placed where too few of its markers are seen to
-  // determine its motion; one such grip is returned, otherwise null.
+  // are all markers of the recording in this frame, NaN where one was not seen. A grip is not
+  // placed where too few of its markers are seen to determine its motion; one such grip is
+  // returned, otherwise null.
   const RecordedGrip* Extend(double time, const Eigen::Matrix3Xd& before,
                              const Eigen::Matrix3Xd& moved, const Eigen::Matrix3Xd& markers);
   // Sets the gripped nodes of a stacked position (3n) to their positions at `time`.
@@ -42,7 +45,8 @@ class GripTracks {
     Eigen::Matrix3Xd rest;                      // rest positions of the nodes
     std::vector<int> markers;                   // columns of the marker tracks
     int span = 0;                               // dimension of their places (geometry/rigid_fit.h)
-    std::map<double, Eigen::Matrix3Xd> places;  // positions by time; empty for a given path
+    std::map<double, Eigen::Matrix3Xd> places;  // positions by time; empty on a given path
+    double since = 0;  // s, when a part on a given path is at its rest place
   };
   const Recording& recording_;
   const Model& model_;

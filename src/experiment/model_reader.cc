@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <string>
 
 #include "core/expression.h"
@@ -27,17 +26,68 @@ MeshSettings ReadMeshSettings(const Config& config) {
   return settings;
 }
 
+namespace {
+
+bool Contain(const EffectList& effects, const std::string& type) {
+  return std::any_of(effects.begin(), effects.end(),
+                     [&](const auto& effect) { return effect->Card().type == type; });
+}
+
+// Refuses `item`, an effect with this card, if one of `others` excludes it.
+void RequireNotExcluded(const Config& item, const EffectCard& card, const EffectList& others) {
+  for (const auto& other : others) {
+    const EffectCard& beside = other->Card();
+    if (beside.type == card.type || MayStandBeside(beside, card)) continue;
+    item.Fail("type", fmt::format("{0} cannot be combined with {1}; `lacuna explain {0}` and "
+                                  "`lacuna explain {1}` describe them",
+                                  card.type, beside.type));
+  }
+}
+
+}  // namespace
+
 EffectList ReadEffects(const Config& config) {
+  EffectList effects = {MakeMaterial(config.Child("material"))};
+  const EffectList listed = ReadEffectsBeside(effects, config);
+  effects.insert(effects.end(), listed.begin(), listed.end());
+  return effects;
+}
+
+EffectList ReadEffectsBeside(const EffectList& others, const Config& config) {
   EffectList effects;
-  effects.push_back(MakeMaterial(config.Child("material")));
-  std::set<std::string> listed;
+  const std::optional<Eigen::Vector3d> gravity = ReadModelGravity(config, others);
   for (const Config& item : config.Items("effects")) {
-    effects.push_back(MakeEffect(item, effects.front().get()));
-    const EffectCard& card = effects.back()->Card();
-    if (!listed.insert(card.type).second && !card.repeatable)
+    const auto effect = MakeEffect(item, others.front().get(), gravity);
+    const EffectCard& card = effect->Card();
+    if (!card.repeatable && Contain(effects, card.type))
       item.Fail("type", fmt::format("{} is listed twice", card.type));
+    if (!card.repeatable && Contain(others, card.type))
+      item.Fail("type",
+                fmt::format("{0} is listed among the effects of the experiment already, which act "
+                            "in every recording, and a model has it only once: where {0} differs "
+                            "between the recordings, list it in each of them instead",
+                            card.type));
+    RequireNotExcluded(item, card, others);
+    RequireNotExcluded(item, card, effects);
+    effects.push_back(effect);
   }
   return effects;
+}
+
+std::optional<Eigen::Vector3d> ReadModelGravity(const Config& config, const EffectList& others) {
+  for (const Config& item : config.Items("effects")) {
+    if (!item.Has("type") || item.Text("type") != GravityCard().type) continue;
+    const Eigen::Vector3d gravity = MakeEffect(item)->Parameters();
+    for (const auto& other : others) {
+      const std::optional<Eigen::Vector3d> own = GravitySettingOf(*other);
+      if (own && !own->isZero(0) && !IsSameGravity(*own, gravity))
+        item.Fail("type", fmt::format("differs from the {} of {} among the experiment's effects; "
+                                      "list both there, or both here",
+                                      kGravitySetting, other->Card().type));
+    }
+    return gravity;
+  }
+  return GravityOf(others);
 }
 
 std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material) {

@@ -4,6 +4,7 @@
 #define LACUNA_EXPERIMENT_MODEL_READER_H_
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,19 @@ struct MeshSettings {
 };
 MeshSettings ReadMeshSettings(const Config& config);
 
-// Reads `material: {law: …}` and `effects: [{type: …}]`. The material comes first.
+// Reads `material: {law: …}` and `effects: [{type: …}]`. The material comes first. Effects that a
+// model cannot have together are refused.
 EffectList ReadEffects(const Config& config);
+
+// Reads the list `effects` of a model that has `others` beside them, the material first: those of
+// one recording beside those of its experiment. Refuses an effect that a model has only once if it
+// is among `others` already, and one that cannot be combined with another.
+EffectList ReadEffectsBeside(const EffectList& others, const Config& config);
+
+// The gravity, m/s², of a model that has the effects of the list `effects` beside `others`; nothing
+// for a model without. Refuses gravity in the list if an added mass among `others` has another
+// weight (effects/free_fall.h).
+std::optional<Eigen::Vector3d> ReadModelGravity(const Config& config, const EffectList& others);
 
 // A user-defined force law (docs/expression.md) that the model may lack.
 struct OwnLaw {

@@ -67,7 +67,8 @@ MeshRecord Describe(const TetMesh& mesh) {
           .largest_radius_edge_ratio = quality.radius_edge_ratio.max};
 }
 
-// Throws InputError for a mesh that would not fit into memory.
+// Throws InputError for a mesh of more tetrahedra than are allowed on any machine, with the name of
+// the key. A mesh that does not fit into this machine's memory is no fault of the input.
 void RefuseTooManyTets(const ReferenceRequest& request, const TriMesh& surface) {
   constexpr double kMost = 2e7;
   if (request.mesh.tets.max_volume == 0) return;

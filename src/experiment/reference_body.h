@@ -32,7 +32,8 @@ struct ReferenceRequest {
   std::vector<Region> regions = {};
 };
 
-// Throws InputError with the reason when the shape cannot be meshed.
+// Throws InputError with the reason when the shape cannot be meshed, and OutOfMemory
+// (core/memory_limit.h) when its mesh does not fit into memory.
 ReferenceBody MakeReferenceBody(const ReferenceRequest& request);
 
 // The files of a run directory: body.msh and notes.txt.

@@ -222,6 +222,12 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
   return motion;
 }
 
+SceneMotion SimulateWholeScene(const Scene& scene, Progress* progress) {
+  SceneMotion motion = SimulateScene(scene, progress);
+  if (!motion.IsUsable()) throw InputError(fmt::format("scene {}: {}", scene.name, motion.message));
+  return motion;
+}
+
 namespace {
 
 // The driven grip as a recording names it, with its path at the ends of the steps.

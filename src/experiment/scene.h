@@ -93,8 +93,16 @@ struct SceneMotion {
   bool IsUsable() const { return status == Status::kFinished; }
 };
 
-// A mesh or a step that fails is reported by the status. Throws Interrupted.
+// Raised whenever a change of the code changes the motion of a scene or the recording that is made
+// of it: the body, its mesh, the time steps, the scanner. What is kept of a scene is kept under it.
+inline constexpr int kSceneVersion = 1;
+
+// A mesh or a step that fails is reported by the status. Throws Interrupted, and OutOfMemory
+// (core/memory_limit.h).
 SceneMotion SimulateScene(const Scene& scene, Progress* progress);
+// The same where nothing can be done without the motion: a failure is an InputError, which names
+// the scene.
+SceneMotion SimulateWholeScene(const Scene& scene, Progress* progress);
 
 // Writes what the scanner sees as a recording into `folder`, and the true surfaces into its
 // subfolder truth (scan/scan_writer.h). The recording names the regions that are fixed but not

@@ -14,9 +14,11 @@
 #include "experiment/known_loads.h"
 #include "fit/step_force_fitter.h"
 #include "geometry/nearest.h"
+#include "geometry/rigid_fit.h"
 #include "geometry/surface_tracks.h"
 #include "reconstruction/followed_sensitivity.h"
 #include "reconstruction/force_model_choice.h"
+#include "reconstruction/point_noise.h"
 #include "reconstruction/recorded_states.h"
 #include "registration/surface_alignment.h"
 
@@ -31,17 +33,10 @@ Eigen::VectorXd Stacked(const Eigen::Matrix3Xd& points) {
   return Eigen::Map<const Eigen::VectorXd>(points.data(), points.size());
 }
 
-double NoiseOf(const ReconstructionStudy& study, const std::vector<FrameState>& states) {
-  if (study.follow.noise > 0) return study.follow.noise;
-  const double estimated = EstimateNoise(states.front().cloud.points);
-  // Without a lower limit, noise-free data would require an exact fit, which no mesh allows.
-  const double floor = 1e-5 * BoundingBoxDiagonal(states.front().cloud.points);
-  return std::max(estimated, floor);
-}
-
-// The places of points of the body in a recorded state, found by CPD.
+// The places of points of the body in a recorded state, found by CPD. Where it failed, they are NaN
+// and their deviation is infinite.
 struct Correspondence {
-  Eigen::Matrix3Xd target;  // 3 × n
+  Eigen::Matrix3Xd target;  // 3 × n, m
   Eigen::VectorXd sigma;    // m, of each target, tangential to the surface
 };
 
@@ -50,8 +45,12 @@ class Follower {
   Follower(const ReconstructionStudy& study, const ReferenceBody& reference,
            const std::vector<FrameState>& states, const TrackedFrames* tracked,
            const std::vector<int>& moduli, FollowedMotion* motion)
-      : study_(study), states_(states), tracked_(tracked), motion_(*motion) {
-    motion_.noise = NoiseOf(study, states);
+      : study_(study),
+        states_(states),
+        tracked_(tracked),
+        are_identified_(HasIdentifiedPoints(study, states)),
+        motion_(*motion) {
+    SetNoise();
     model_ = {motion_.body, study.effects, {}};
     grips_ = std::make_unique<GripTracks>(study.recording, reference.mesh, &model_);
     forces_ = MakeForceModel(study, model_);
@@ -59,9 +58,9 @@ class Follower {
       known_forces_ = MakeKnownForces(study.recording, model_);
     model_.effects.insert(model_.effects.end(), known_forces_.begin(), known_forces_.end());
     history_ = RestHistory(model_);
-    if (states.front().tracked.cols() > 0) {
-      tracks_ = TrackOnSurface(motion_.body->boundary, states.front().tracked);
-    }
+    if (const FrameState& front = states.front(); front.tracked.cols() > 0)
+      tracks_ = TrackOnSurface(motion_.body->boundary,
+                               are_identified_ ? front.tracked : front.cloud.points);
     StepOptions options;
     options.scheme = study.follow.scheme;
     options.refuse_inverted = !study.follow.allow_inverted;
@@ -79,7 +78,7 @@ class Follower {
     frame.force = Eigen::Matrix3Xd::Zero(3, motion_.body->NodeCount());
     frame.pseudo_force = frame.force;
     frame.solver = {true, "reference", "", 0};
-    frame.residual = ResidualDisplacement(frame.position, states_.front());
+    MeasureResidual(states_.front(), &frame);
     motion_.frames.push_back(std::move(frame));
     grips_->Begin(history_.time);
   }
@@ -98,7 +97,7 @@ class Follower {
     const Eigen::Matrix3Xd before = AsPoints(history_.position);
     const Eigen::Matrix3Xd shift = RegisteredShift(k, before);
     frame.pseudo_force = PseudoForce(shift, time_step);
-    const RecordedGrip* lost = grips_->Extend(state.time, before, before + shift, state.tracked);
+    const RecordedGrip* lost = grips_->Extend(state.time, before, before + shift, MarkersIn(k));
     if (lost != nullptr)
       throw InputError(
           fmt::format("{}: at {:g} s too few of the markers that \"{}\" follows are seen, or their "
@@ -165,7 +164,7 @@ class Follower {
       if (!problem.empty()) return Fail("scan", problem, iterations, &frame);
     }
     frame.force = AsPoints(fit.force + KnownForces());
-    frame.residual = ResidualDisplacement(frame.position, state);
+    MeasureResidual(state, &frame);
     const bool is_stopped = fit.status == ForceFit::Status::kEndedEarly;
     if (is_stopped) {
       motion_.warnings.push_back(
@@ -186,9 +185,28 @@ class Follower {
     const auto unknown = std::numeric_limits<double>::quiet_NaN();
     frame->position = Eigen::Matrix3Xd::Constant(3, nodes, unknown);
     frame->force = frame->position;
-    frame->residual = Eigen::Matrix3Xd::Constant(3, motion_.body->boundary.node.size(), unknown);
+    const auto points = are_identified_ ? tracks_.Count() : motion_.body->boundary.node.size();
+    frame->residual = Eigen::Matrix3Xd::Constant(3, points, unknown);
     motion_.frames.push_back(std::move(*frame));
     return false;
+  }
+
+  // Only a fit of forces uses the noise.
+  void SetNoise() {
+    if (!study_.follow.forces.AreFitted()) return;
+    motion_.noise = study_.follow.noise;
+    if (motion_.noise > 0) return;
+    const PointNoise estimate =
+        NamingWhere(study_.name, [this] { return EstimatePointNoise(states_, are_identified_); });
+    motion_.noise = estimate.deviation;
+    if (!estimate.warning.empty()) motion_.warnings.push_back(estimate.warning);
+  }
+
+  // All markers of the recording in state k, those that are held out included; 3 × 0 without.
+  Eigen::Matrix3Xd MarkersIn(size_t k) const {
+    const std::vector<Eigen::Matrix3Xd>& positions = study_.recording.markers.positions;
+    if (positions.empty()) return Eigen::Matrix3Xd(3, 0);
+    return positions[static_cast<size_t>(study_.frames[k])];
   }
 
   PointCloud SimulatedSurface(const Eigen::Matrix3Xd& nodes) const {
@@ -203,11 +221,25 @@ class Follower {
       const Eigen::Matrix3Xd& rest = motion_.body->mesh.nodes;
       return tracked_->DisplacementAt(k, rest) - tracked_->DisplacementAt(k - 1, rest);
     }
+    if (are_identified_ && SeenBeside(k) < CpdResult::kFewestPoints) return RigidShift(k, nodes);
     const PointCloud from = k > 0 ? StatePoints(states_[k - 1]) : SimulatedSurface(nodes);
     // The search starts from the last motion, because motions are continuous.
     last_motion_ = Registered(from, StatePoints(states_[k]), &last_motion_).field;
     if (last_motion_.IsEmpty()) return Eigen::Matrix3Xd::Zero(3, nodes.cols());
     return last_motion_.Evaluate(nodes);
+  }
+
+  // The number of points that are seen in state k, or in the state before it if that shows fewer.
+  Eigen::Index SeenBeside(size_t k) const {
+    const Eigen::Index here = states_[k].cloud.Size();
+    return k > 0 ? std::min(here, states_[k - 1].cloud.Size()) : here;
+  }
+
+  // The rigid motion of identified points that are too few for CPD. In the first state they are
+  // where the undeformed body has them.
+  Eigen::Matrix3Xd RigidShift(size_t k, const Eigen::Matrix3Xd& nodes) const {
+    if (k == 0) return Eigen::Matrix3Xd::Zero(3, nodes.cols());
+    return FitRigidMotion(states_[k - 1].tracked, states_[k].tracked).motion * nodes - nodes;
   }
 
   Eigen::Matrix3Xd TrackedTarget() const {
@@ -216,17 +248,21 @@ class Follower {
   }
 
   // Registers two clouds. A result that has not converged is used with a warning. One that failed
-  // is replaced by zero displacements with an infinite standard deviation.
+  // is replaced by unknown displacements (NaN) with an infinite standard deviation.
   Alignment Registered(const PointCloud& source, const PointCloud& target,
                        const DisplacementField* previous = nullptr) const {
     if (previous != nullptr && previous->IsEmpty()) previous = nullptr;
     Alignment alignment = Align(source, target, study_.registration, previous);
     if (!alignment.IsUsable()) {
-      motion_.warnings.push_back(
-          fmt::format("frame {}: registration: {}", study_.frames[frame_], alignment.message));
+      const std::string warning =
+          fmt::format("frame {}: registration: {}", study_.frames[frame_], alignment.message);
+      // A frame is registered several times, often with the same outcome.
+      if (motion_.warnings.empty() || motion_.warnings.back() != warning)
+        motion_.warnings.push_back(warning);
     }
     if (alignment.field.IsEmpty()) {
-      alignment.displacement = Eigen::Matrix3Xd::Zero(3, source.Size());
+      alignment.displacement =
+          Eigen::Matrix3Xd::Constant(3, source.Size(), std::numeric_limits<double>::quiet_NaN());
       alignment.standard_deviation = Eigen::VectorXd::Constant(source.Size(), kUnobserved);
     }
     return alignment;
@@ -254,32 +290,28 @@ class Follower {
     return known;
   }
 
-  // The points that represent the model in a registration: the places of the tracked points on it,
-  // which exclude sides that are never seen, or its whole surface.
+  // The points that represent the model in a registration: the places of the tracked points that
+  // the first state shows, which exclude sides that are never seen, or its whole surface.
   PointCloud RegistrationPoints(const Eigen::Matrix3Xd& nodes) const {
     if (tracks_.Count() == 0) return SimulatedSurface(nodes);
     return {PointsAt(tracks_, motion_.body->boundary, nodes), {}};
   }
 
-  bool IsTracked(const FrameState& state) const {
-    return study_.follow.use_identity && state.tracked.cols() > 0;
-  }
-
   Correspondence Register(const Eigen::Matrix3Xd& nodes, const FrameState& state) const {
-    if (IsTracked(state)) return {};
+    if (are_identified_) return {};
     if (tracked_ != nullptr) {
       return {TrackedTarget(),
               tracked_->DeviationAt(frame_, motion_.body->boundary.surface.vertices)};
     }
-    const PointCloud surface = RegistrationPoints(nodes);
-    const Alignment aligned = Registered(surface, StatePoints(state));
-    return {surface.points + aligned.displacement, aligned.standard_deviation};
+    const PointCloud points = RegistrationPoints(nodes);
+    const Alignment aligned = Registered(points, StatePoints(state));
+    return {points.points + aligned.displacement, aligned.standard_deviation};
   }
 
   Observations Observe(const Eigen::Matrix3Xd& nodes, const FrameState& state,
                        const Correspondence& correspondence) const {
     const BoundarySurface& boundary = motion_.body->boundary;
-    if (IsTracked(state)) {
+    if (are_identified_) {
       return ObserveMarkers(boundary, tracks_.at_rest, state.tracked - tracks_.offset,
                             motion_.noise);
     }
@@ -301,19 +333,35 @@ class Follower {
     return Concatenate(registered, scanned);
   }
 
-  // The residual displacements align(p, S) − p of Eq. 1.
-  Eigen::Matrix3Xd ResidualDisplacement(const Eigen::Matrix3Xd& nodes,
-                                        const FrameState& state) const {
-    const Eigen::Matrix3Xd vertices = BoundaryAt(motion_.body->boundary, nodes).vertices;
-    if (tracked_ != nullptr) return TrackedTarget() - vertices;
-    const Alignment aligned = Registered(RegistrationPoints(nodes), StatePoints(state));
-    return aligned.field.IsEmpty() ? Eigen::Matrix3Xd::Zero(3, vertices.cols()).eval()
-                                   : aligned.field.Evaluate(vertices);
+  // Sets D of Eq. 1 for the positions of the frame, or the reason why it is not known.
+  void MeasureResidual(const FrameState& state, FollowedFrame* frame) const {
+    const BoundarySurface& boundary = motion_.body->boundary;
+    if (are_identified_) {
+      frame->residual = state.tracked - PointsAt(tracks_, boundary, frame->position);
+      if (frame->residual.array().isNaN().colwise().any().all())
+        frame->residual_problem = "none of the tracked points is seen";
+      return;
+    }
+    const Eigen::Matrix3Xd vertices = BoundaryAt(boundary, frame->position).vertices;
+    if (tracked_ != nullptr) {
+      frame->residual = TrackedTarget() - vertices;
+      frame->residual_problem = tracked_->failures[frame_];
+    } else {
+      const Alignment aligned = Registered(RegistrationPoints(frame->position), StatePoints(state));
+      if (aligned.field.IsEmpty())
+        frame->residual_problem = aligned.message;
+      else
+        frame->residual = aligned.field.Evaluate(vertices);
+    }
+    if (!frame->residual_problem.empty())
+      frame->residual =
+          Eigen::Matrix3Xd::Constant(3, vertices.cols(), std::numeric_limits<double>::quiet_NaN());
   }
 
   const ReconstructionStudy& study_;
   const std::vector<FrameState>& states_;
   const TrackedFrames* tracked_;
+  const bool are_identified_;  // HasIdentifiedPoints
   FollowedMotion& motion_;
   size_t frame_ = 0;  // frame that is being followed
   Model model_;
@@ -323,7 +371,9 @@ class Follower {
   MotionHistory history_;
   std::unique_ptr<Stepper> stepper_;
   std::unique_ptr<FollowedSensitivity> sensitivity_;  // null if it was not asked for
-  SurfaceTracks tracks_;                              // tracked points; empty where there are none
+  // All tracked points, or those that the first state shows where they do not identify themselves;
+  // empty for scans.
+  SurfaceTracks tracks_;
   Eigen::Matrix3Xd previous_velocity_;
   DisplacementField last_motion_;
   Eigen::VectorXd force_, coefficients_;
@@ -353,6 +403,7 @@ FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBod
   CHECK(moduli.empty() || (tracked != nullptr && HasModulusSensitivity(study.follow.forces)));
   CHECK(tracked == nullptr || (FirstFrameIsReference(study) && states.front().tracked.cols() == 0));
   motion.body = std::make_shared<Body>(MakeBody(reference.mesh, study.density));
+  if (tracked != nullptr) motion.warnings = tracked->warnings;
   Follower follower(study, reference, states, tracked, moduli, &motion);
   progress->Begin("forces", static_cast<int64_t>(states.size()));
   size_t first = 0;

@@ -27,9 +27,16 @@ struct FollowedFrame {
   // The initial guess of the paper, m α in N, with v = d/dt and α = dv/dt from the registered
   // displacements, and with m the masses of the nodes or 1 kg.
   Eigen::Matrix3Xd pseudo_force;
-  // align(p, S) − p of Eq. 1 after the step: from each boundary vertex to its place in the state.
-  Eigen::Matrix3Xd residual;  // 3 × boundary vertices, m
-  double weighted_rms = 0;    // rms of the observations' residuals, each divided by its σ
+  // D of Eq. 1 after the step, m: align(p, S) − p, from each boundary vertex to its place in the
+  // state (3 × boundary vertices). Where tracked points identify themselves (HasIdentifiedPoints)
+  // no alignment is needed: from the place of each on the model to where it was seen (3 × tracked
+  // points; NaN where it was not, and for a point that the first state does not show, whose place
+  // on the model is not known).
+  Eigen::Matrix3Xd residual;
+  // Why D was not measured, in which case all of it is NaN: the registration failed, or no tracked
+  // point was seen. Empty where it was measured, and in a frame that was not followed.
+  std::string residual_problem;
+  double weighted_rms = 0;  // rms of the observations' residuals, each divided by its σ
   int observations = 0;
   // dx/dθ for the requested moduli (3·nodes × moduli). It is not kept in files, and empty where it
   // was not requested or does not exist (followed_sensitivity.h).
@@ -39,7 +46,9 @@ struct FollowedFrame {
 
 struct FollowedMotion {
   std::shared_ptr<const Body> body;
-  double noise = 0;                   // m, the σ of a scanned point that the fit used
+  // m, the σ that the fit used, of a scanned point or of a coordinate of an identified one; NaN
+  // where no forces were fitted.
+  double noise = kNotMeasured;
   std::vector<FollowedFrame> frames;  // ends before the first frame that could not be followed
   std::vector<std::string> warnings;
 };

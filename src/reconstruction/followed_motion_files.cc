@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
-#include "core/error.h"
+#include "core/json_file.h"
+#include "core/json_number.h"
 #include "core/npy.h"
 #include "reconstruction/follow.h"
 #include "reconstruction/reconstruction_study.h"
@@ -22,20 +22,11 @@ Eigen::Vector3d FromJson(const nlohmann::json& value) {
                          value.at(2).get<double>());
 }
 
-nlohmann::json ReadJson(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  try {
-    return nlohmann::json::parse(stream);
-  } catch (const nlohmann::json::exception& problem) {
-    throw InputError(SourcePosition{file.string()}, problem.what());
-  }
-}
-
 }  // namespace
 
 void SaveFollowedMotion(const FollowedMotion& motion, const std::filesystem::path& folder) {
   nlohmann::json index;
-  index["noise_m"] = motion.noise;
+  index["noise_m"] = NumberOrNull(motion.noise);
   index["warnings"] = motion.warnings;
   for (size_t k = 0; k < motion.frames.size(); ++k) {
     const FollowedFrame& frame = motion.frames[k];
@@ -43,6 +34,7 @@ void SaveFollowedMotion(const FollowedMotion& motion, const std::filesystem::pat
                                {"weighted_rms", frame.weighted_rms},
                                {"observations", frame.observations},
                                {"force_deviation_N", ToJson(frame.force_deviation)},
+                               {"residual_problem", frame.residual_problem},
                                {"usable", frame.solver.usable},
                                {"status", frame.solver.status},
                                {"message", frame.solver.message},
@@ -57,27 +49,29 @@ void SaveFollowedMotion(const FollowedMotion& motion, const std::filesystem::pat
 
 FollowedMotion ReadFollowedMotion(const ReconstructionStudy& study, const ReferenceBody& reference,
                                   const std::filesystem::path& folder) {
-  FollowedMotion motion;
-  motion.body = std::make_shared<Body>(MakeBody(reference.mesh, study.density));
-  const nlohmann::json index = ReadJson(folder / "motion.json");
-  motion.noise = index.at("noise_m");
-  motion.warnings = index.at("warnings");
-  for (const nlohmann::json& entry : index.at("frames")) {
-    FollowedFrame frame;
-    frame.time = entry.at("time_s");
-    frame.weighted_rms = entry.at("weighted_rms");
-    frame.observations = entry.at("observations");
-    frame.force_deviation = FromJson(entry.at("force_deviation_N"));
-    frame.solver = {entry.at("usable"), entry.at("status"), entry.at("message"),
-                    entry.at("iterations")};
-    const size_t k = motion.frames.size();
-    frame.position = ReadNpyMatrix(folder / fmt::format("position_{:04}.npy", k));
-    frame.force = ReadNpyMatrix(folder / fmt::format("force_{:04}.npy", k));
-    frame.pseudo_force = ReadNpyMatrix(folder / fmt::format("pseudo_force_{:04}.npy", k));
-    frame.residual = ReadNpyMatrix(folder / fmt::format("residual_{:04}.npy", k));
-    motion.frames.push_back(std::move(frame));
-  }
-  return motion;
+  return ReadJsonFile(folder / "motion.json", [&](const nlohmann::json& index) {
+    FollowedMotion motion;
+    motion.body = std::make_shared<Body>(MakeBody(reference.mesh, study.density));
+    motion.noise = NumberOr(index.at("noise_m"));
+    motion.warnings = index.at("warnings");
+    for (const nlohmann::json& entry : index.at("frames")) {
+      FollowedFrame frame;
+      frame.time = entry.at("time_s");
+      frame.weighted_rms = entry.at("weighted_rms");
+      frame.observations = entry.at("observations");
+      frame.force_deviation = FromJson(entry.at("force_deviation_N"));
+      frame.residual_problem = entry.at("residual_problem");
+      frame.solver = {entry.at("usable"), entry.at("status"), entry.at("message"),
+                      entry.at("iterations")};
+      const size_t k = motion.frames.size();
+      frame.position = ReadNpyMatrix(folder / fmt::format("position_{:04}.npy", k));
+      frame.force = ReadNpyMatrix(folder / fmt::format("force_{:04}.npy", k));
+      frame.pseudo_force = ReadNpyMatrix(folder / fmt::format("pseudo_force_{:04}.npy", k));
+      frame.residual = ReadNpyMatrix(folder / fmt::format("residual_{:04}.npy", k));
+      motion.frames.push_back(std::move(frame));
+    }
+    return motion;
+  });
 }
 
 }  // namespace lacuna

@@ -12,9 +12,7 @@ std::vector<Perturbation> PerturbationsOf(const Model& model, const std::vector<
 
 }  // namespace
 
-bool HasModulusSensitivity(const ForceSettings& forces) {
-  return forces.kind == ForceSettings::Kind::kNone || forces.kind == ForceSettings::Kind::kKnown;
-}
+bool HasModulusSensitivity(const ForceSettings& forces) { return !forces.AreFitted(); }
 
 FollowedSensitivity::FollowedSensitivity(const Model& model, const std::vector<int>& parameters)
     : linear_(model, PerturbationsOf(model, parameters)) {}

@@ -22,9 +22,7 @@ ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_a
     nodes.assign(body.boundary.node.begin(), body.boundary.node.end());
   }
   std::erase_if(nodes, [&](int node) { return !selectable[node]; });
-  const bool fits_forces =
-      settings.kind != ForceSettings::Kind::kNone && settings.kind != ForceSettings::Kind::kKnown;
-  if (nodes.empty() && fits_forces) {
+  if (nodes.empty() && settings.AreFitted()) {
     throw InputError(fmt::format("{}: forces: no free node of the boundary {}", study.name,
                                  settings.region
                                      ? "is in their region"
@@ -55,7 +53,13 @@ ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_a
       break;
     }
   }
-  return settings.hold_net_force ? HoldNetForceAndTorque(body, model) : model;
+  if (settings.hold_net_force) model = HoldNetForceAndTorque(body, model);
+  if (settings.AreFitted() && !model.HasUnknowns())
+    throw InputError(fmt::format(
+        "{}: forces.hold_net_force: the forces on the {} free node{} of the boundary have no "
+        "combination without a net force and a net torque, so that none can be fitted",
+        study.name, nodes.size(), nodes.size() == 1 ? "" : "s"));
+  return model;
 }
 
 }  // namespace lacuna

@@ -9,8 +9,8 @@
 namespace lacuna {
 
 // The force model that the settings describe. It acts on the boundary nodes of the region except
-// those that a grip holds, where a force has no effect. Throws InputError when no node is
-// left.
+// those that a grip holds, where a force has no effect. Throws InputError when no node is left, or
+// no combination of forces without net force and torque where that is asked for.
 ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_and_body);
 
 }  // namespace lacuna

@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
+#include <variant>
 
 #include "core/interrupt.h"
 #include "experiment/frame_states.h"
 #include "experiment/reference_body.h"
 #include "experiment/scan_settings.h"
 #include "reconstruction/follow.h"
+#include "reconstruction/known_answers.h"
 #include "reconstruction/reconstruction_measures.h"
 #include "reconstruction/recorded_states.h"
 #include "reconstruction/shown_reconstruction.h"
@@ -21,10 +23,10 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
-constexpr int kStatesVersion = 2;
+constexpr int kStatesVersion = 3;
 constexpr int kReferenceVersion = 1;
-constexpr int kMotionVersion = 3;
-constexpr int kResultsVersion = 3;
+constexpr int kMotionVersion = 4;
+constexpr int kResultsVersion = 4;
 
 InputFiles InputsOf(const ReconstructionStudy& study) {
   InputFiles inputs;
@@ -33,13 +35,22 @@ InputFiles InputsOf(const ReconstructionStudy& study) {
   return inputs;
 }
 
-// The known answers. Nothing has been read of them yet.
+// The known answers. Nothing that enters the results has been read of them yet.
 InputFiles TruthOf(const ReconstructionStudy& study) {
   InputFiles truth;
-  for (const auto& file :
-       {study.validation.true_positions, study.validation.true_mesh, study.validation.true_forces})
-    if (!file.empty()) truth.Add(file.filename().string(), StateOf(file));
+  for (const auto& [name, file] : FilesOfKnownAnswers(study.validation, study.frames))
+    truth.Add(name, StateOf(file));
   return truth;
+}
+
+// The options on which the reference body depends. The nodes that a force region lists are among
+// them, because the numbers are checked against those of the mesh when it is read.
+nlohmann::json OptionsOfMesh(const ReconstructionStudy& study) {
+  nlohmann::json options{{"mesh", study.configuration.at("mesh")}};
+  const std::optional<Region>& region = study.follow.forces.region;
+  if (region && std::holds_alternative<NodeRegion>(region->shape))
+    options["forces.region"] = study.configuration.at("forces").at("region");
+  return options;
 }
 
 }  // namespace
@@ -66,7 +77,7 @@ RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress
   std::map<std::string, std::string> behind{{"surfaces", run.ResultHash("surfaces")}};
   for (const auto& [name, hash] : inputs) behind[name] = hash;
   const auto reference = RunStage<ReferenceBody>(
-      &run, {"mesh", kReferenceVersion, part({"mesh"}), behind}, progress,
+      &run, {"mesh", kReferenceVersion, OptionsOfMesh(study), behind}, progress,
       [&] {
         progress->Begin("mesh", 0);
         ReferenceBody body = MakeReferenceBody(study, states.front());

@@ -5,20 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "analysis/measure.h"
-#include "core/npy.h"
 #include "fit/force_model.h"
 #include "geometry/embedding.h"
-#include "geometry/mesh_io.h"
 #include "geometry/nearest.h"
 #include "geometry/surface_tracks.h"
+#include "reconstruction/known_answers.h"
 #include "reconstruction/recorded_states.h"
+#include "reconstruction/residual_at_vertices.h"
 #include "record/csv_table.h"
 #include "report/surface_picture.h"
 #include "report/vtk_files.h"
-#include "scan/scan_writer.h"
 
 namespace lacuna {
 namespace {
@@ -66,8 +64,7 @@ void MeasureTrueSurfaces(const ReconstructionStudy& study, const FollowedMotion&
   int followed = 0;
   for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
     if (!motion.frames[k].solver.usable) continue;
-    const TriMesh truth =
-        ReadTrueSurface(study.validation.true_surfaces.parent_path(), study.frames[k]);
+    const TriMesh truth = ReadTrueSurface(study.validation, study.frames[k]);
     const TriMesh found = BoundaryAt(motion.body->boundary, motion.frames[k].position);
     const double mean = DistanceToSurface(found, truth.vertices).mean;
     sum += mean;
@@ -81,34 +78,19 @@ void MeasureTrueSurfaces(const ReconstructionStudy& study, const FollowedMotion&
 
 void MeasureTruePositions(const ReconstructionStudy& study, const FollowedMotion& motion,
                           RunRecord* record) {
-  const ValidationSettings& validation = study.validation;
-  if (validation.true_positions.empty()) return;
-  const TetMeshFile rest = ReadTetMesh(validation.true_mesh);
-  const NpyArray positions = ReadNpy(validation.true_positions);
-  if (positions.shape.size() != 3 || positions.shape[2] != 3) {
-    throw InputError(SourcePosition{validation.true_positions.string()},
-                     "expected an array of frames × points × 3");
-  }
-  const auto points_per_frame = positions.shape[1];
-  const Embedding embedding = Embed(motion.body->mesh, rest.mesh.nodes);
+  if (study.validation.true_positions.empty()) return;
+  const TruePositions known = ReadTruePositions(study.validation, study.frames);
+  const Embedding embedding = Embed(motion.body->mesh, known.rest);
   double error_sum = 0, largest = 0;
   int64_t count = 0;
   for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
     if (!motion.frames[k].solver.usable) continue;
-    const int frame = study.frames[k];
-    if (frame >= positions.shape[0]) {
-      throw InputError(
-          SourcePosition{validation.true_positions.string()},
-          fmt::format("has {} frames; frame {} was followed", positions.shape[0], frame));
-    }
-    const Eigen::Map<const Eigen::Matrix3Xd> all(
-        positions.values.data() + 3 * points_per_frame * frame, 3, points_per_frame);
-    const Eigen::Matrix3Xd truth = all(Eigen::all, rest.node_in_file);
+    const Eigen::Matrix3Xd truth = known.At(study.frames[k]);
     const Eigen::Matrix3Xd found =
-        rest.mesh.nodes + (PointsAt(embedding, motion.body->mesh, motion.frames[k].position) -
-                           PointsAt(embedding, motion.body->mesh, motion.body->mesh.nodes));
+        known.rest + (PointsAt(embedding, motion.body->mesh, motion.frames[k].position) -
+                      PointsAt(embedding, motion.body->mesh, motion.body->mesh.nodes));
     error_sum += (found - truth).colwise().norm().sum();
-    largest = std::max(largest, (truth - rest.mesh.nodes).colwise().norm().maxCoeff());
+    largest = std::max(largest, (truth - known.rest).colwise().norm().maxCoeff());
     count += truth.cols();
   }
   if (count == 0) return;
@@ -120,12 +102,12 @@ void MeasureTruePositions(const ReconstructionStudy& study, const FollowedMotion
 void MeasureTrueForces(const ReconstructionStudy& study, const FollowedMotion& motion,
                        RunRecord* record) {
   if (study.validation.true_forces.empty()) return;
-  const Eigen::MatrixXd truth = ReadNpyMatrix(study.validation.true_forces);
+  const Eigen::MatrixXd truth = ReadTrueForces(study.validation, study.frames);
   std::vector<double> errors;
   for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
-    if (!motion.frames[k].solver.usable || study.frames[k] >= truth.rows()) continue;
+    if (!motion.frames[k].solver.usable) continue;
     const Eigen::Vector3d known = truth.row(study.frames[k]).transpose();
-    if (known.norm() == 0) continue;
+    if (!(known.norm() > 0)) continue;
     errors.push_back((motion.frames[k].force.rowwise().sum() - known).norm() / known.norm());
   }
   if (errors.empty()) return;
@@ -136,15 +118,18 @@ void MeasureTrueForces(const ReconstructionStudy& study, const FollowedMotion& m
 // Draws the model's surface at the last frame that was followed, coloured by |D|, with the scan's
 // points.
 void DrawLastFrame(const ReconstructionStudy& study, const std::vector<FrameState>& states,
-                   const FollowedMotion& motion, const std::filesystem::path& file) {
+                   const FollowedMotion& motion, const ResidualAtVertices& residuals,
+                   const std::filesystem::path& file) {
   size_t last = motion.frames.size();
   while (last > 0 && !motion.frames[last - 1].solver.usable) --last;
   if (last == 0) return;
   const FollowedFrame& frame = motion.frames[last - 1];
   SurfaceScene scene;
   scene.mesh = BoundaryAt(motion.body->boundary, frame.position);
-  scene.vertex_values = 1e3 * frame.residual.colwise().norm().transpose();
-  scene.value_name = "|D| mm";
+  if (frame.residual_problem.empty()) {
+    scene.vertex_values = 1e3 * residuals.Of(frame).colwise().norm().transpose();
+    scene.value_name = "|D| mm";
+  }
   scene.points = states[last - 1].cloud.points;
   scene.caption =
       fmt::format("{}, frame {}: model and scanned points", study.name, study.frames[last - 1]);
@@ -157,6 +142,25 @@ void DrawLastFrame(const ReconstructionStudy& study, const std::vector<FrameStat
 
 double OrNotMeasured(bool measured, double value) { return measured ? value : kNotMeasured; }
 
+// A sentence about followed frames in which D was not measured; empty where there is none.
+std::string UnmeasuredWarning(const ReconstructionStudy& study, const FollowedMotion& motion) {
+  int followed = 0, unmeasured = 0;
+  std::string first;
+  for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
+    const FollowedFrame& frame = motion.frames[k];
+    if (!frame.solver.usable) continue;
+    ++followed;
+    if (frame.residual_problem.empty()) continue;
+    if (unmeasured++ == 0)
+      first = fmt::format("frame {}: {}", study.frames[k], frame.residual_problem);
+  }
+  if (unmeasured == 0) return "";
+  return fmt::format(
+      "|D| was not measured in {} of {} followed frames (the first is {}); means of |D| are over "
+      "the other {}, and |D_anim|, a sum over all frames, is not given",
+      unmeasured, followed, first, followed - unmeasured);
+}
+
 }  // namespace
 
 RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& reference,
@@ -166,9 +170,15 @@ RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& refe
   record.object_size = BoundingBoxDiagonal(motion.body->mesh.nodes);
   record.mesh = reference.quality;
   record.warnings = study.recording.warnings;
-  record.warnings.insert(record.warnings.end(), reference.notes.begin(), reference.notes.end());
-  record.warnings.insert(record.warnings.end(), motion.warnings.begin(), motion.warnings.end());
-  record.point_residuals.resize(motion.body->boundary.node.size(),
+  const auto add = [&record](const std::vector<std::string>& warnings) {
+    record.warnings.insert(record.warnings.end(), warnings.begin(), warnings.end());
+  };
+  add(WarningsOfStates(study, states));
+  add(reference.notes);
+  add(motion.warnings);
+  const std::string unmeasured = UnmeasuredWarning(study, motion);
+  if (!unmeasured.empty()) add({unmeasured});
+  record.point_residuals.resize(motion.frames.front().residual.cols(),
                                 static_cast<Eigen::Index>(motion.frames.size()));
   std::vector<LengthSummary> residuals;
   double distance_sum = 0, per_point_sum = 0;
@@ -176,6 +186,7 @@ RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& refe
   for (size_t k = 0; k < motion.frames.size(); ++k) {
     const FollowedFrame& frame = motion.frames[k];
     const bool usable = frame.solver.usable;
+    const bool measured = usable && frame.residual_problem.empty();
     FrameRecord entry;
     entry.frame = study.frames[k];
     entry.time = frame.time;
@@ -199,27 +210,30 @@ RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& refe
       entry.force_resultant_deviation = frame.force_deviation;
       entry.torque_resultant = net.torque;
       if (k >= FirstFollowed(study)) {
-        residuals.push_back(residual);
         distance_sum += distance.mean;
-        per_point_sum += residual.mean;
         ++followed;
       }
     }
-    entry.residual = OrNotMeasured(usable, residual.sum);
-    entry.residual_mean = OrNotMeasured(usable, residual.mean);
+    if (measured && k >= FirstFollowed(study)) {
+      residuals.push_back(residual);
+      per_point_sum += residual.mean;
+    }
+    entry.residual = OrNotMeasured(measured, residual.sum);
+    entry.residual_mean = OrNotMeasured(measured, residual.mean);
     entry.relative_residual = entry.residual_mean / record.object_size;
     entry.relative_surface_distance = entry.surface_distance_mean / record.object_size;
     record.frames.push_back(entry);
   }
-  record.animation_residual = AnimationResidual(residuals);
-  record.relative_animation_residual =
-      OrNotMeasured(followed > 0, per_point_sum / followed / record.object_size);
-  record.measures["noise_m"] = motion.noise;
-  if (followed > 0) {
-    record.measures["residual_per_point_m"] = per_point_sum / followed;
-    record.measures["surface_distance_mean_m"] = distance_sum / followed;
-  }
+  const auto measured_frames = static_cast<double>(residuals.size());
+  const double per_point = OrNotMeasured(!residuals.empty(), per_point_sum / measured_frames);
   const bool complete = motion.frames.size() == states.size() && motion.frames.back().solver.usable;
+  record.animation_residual =
+      OrNotMeasured(complete && unmeasured.empty(), AnimationResidual(residuals));
+  record.relative_animation_residual = per_point / record.object_size;
+  if (!std::isnan(motion.noise)) record.measures["noise_m"] = motion.noise;
+  record.measures["residual_frames"] = measured_frames;
+  if (!residuals.empty()) record.measures["residual_per_point_m"] = per_point;
+  if (followed > 0) record.measures["surface_distance_mean_m"] = distance_sum / followed;
   record.stages["forces"] = {complete, complete ? "converged" : "no convergence",
                              complete ? "" : motion.frames.back().solver.message, 0};
   MeasureHeldOut(study, states, motion, &record);
@@ -233,6 +247,7 @@ void WriteFields(const ReconstructionStudy& study, const std::vector<FrameState>
                  const FollowedMotion& motion, const RunRecord& /*record*/,
                  const std::filesystem::path& folder) {
   const Body& body = *motion.body;
+  const ResidualAtVertices residuals(study, states, motion);
   std::vector<TimedFile> bodies, surfaces, scans;
   for (size_t k = 0; k < motion.frames.size(); ++k) {
     const FollowedFrame& frame = motion.frames[k];
@@ -251,10 +266,9 @@ void WriteFields(const ReconstructionStudy& study, const std::vector<FrameState>
     bodies.push_back({frame.time, file("body", "vtu")});
 
     const TriMesh surface = BoundaryAt(body.boundary, frame.position);
-    WriteVtp(
-        file("surface", "vtp"), surface,
-        {{{"residual_m", frame.residual}, {"residual_length_m", frame.residual.colwise().norm()}},
-         {}});
+    const Eigen::Matrix3Xd residual = residuals.Of(frame);
+    WriteVtp(file("surface", "vtp"), surface,
+             {{{"residual_m", residual}, {"residual_length_m", residual.colwise().norm()}}, {}});
     surfaces.push_back({frame.time, file("surface", "vtp")});
 
     const SurfaceHits hits = SurfaceSearch(surface).Nearest(states[k].cloud.points);
@@ -262,7 +276,7 @@ void WriteFields(const ReconstructionStudy& study, const std::vector<FrameState>
              {{"distance_to_model_m", hits.distance.transpose()}});
     scans.push_back({frame.time, file("scan", "vtp")});
   }
-  DrawLastFrame(study, states, motion, folder / "last_frame.png");
+  DrawLastFrame(study, states, motion, residuals, folder / "last_frame.png");
   WritePvd(folder / "body.pvd", bodies);
   WritePvd(folder / "surface.pvd", surfaces);
   WritePvd(folder / "scan.pvd", scans);

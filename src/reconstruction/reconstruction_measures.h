@@ -16,10 +16,16 @@
 namespace lacuna {
 
 // Computes |D| (Eq. 1) and distances for each frame, |D_anim| (Eq. 2), and the errors against
-// held-out points and known truths where the study names them. RunRecord::measures contains,
+// held-out points and known truths where the study names them. Frames in which D was not measured
+// have no |D|; a warning says how many there are. |D_anim| is measured only where all frames were
+// followed and D was measured in all of them after the reference, because a sum without some frames
+// would be too small. The warnings include the notes on the states. RunRecord::measures contains,
 // besides the values of the frames:
-//   noise_m                        σ of a scanned point, as used by the fit
-//   residual_per_point_m           mean of |D| per point over the frames
+//   noise_m                        σ of a scanned point, or of a coordinate of a point that
+//                                  identifies itself, as used by the fit; absent where no forces
+//                                  were fitted
+//   residual_frames                number of frames after the reference in which D was measured
+//   residual_per_point_m           mean of |D| per point over these frames
 //   surface_distance_mean_m        mean over the frames after the reference
 //   held_out_rms_max_m             largest rms error of the held-out points in a frame
 //   held_out_spacing_m             their mean distance to the nearest other tracked point
@@ -28,6 +34,7 @@ namespace lacuna {
 //   true_surface_distance_max_m    the same for the worst frame
 //   true_position_mean_error       mean error of the true points over the largest displacement
 //   true_force_median_error        median over the frames of |F − F_true| / |F_true|
+// Throws InputError where the files of the known truths cannot be used (known_answers.h).
 RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& reference,
                      const std::vector<FrameState>& states, const FollowedMotion& motion);
 

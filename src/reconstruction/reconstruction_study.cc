@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/error.h"
 #include "experiment/scan_settings.h"
+#include "geometry/mesh_io.h"
+#include "reconstruction/point_noise.h"
 
 namespace lacuna {
 namespace {
@@ -19,7 +22,9 @@ CpdOptions ReadRegistration(const Config& config) {
   cpd.tangential_weight =
       config.Number("tangential_weight", {0, 1, true, false}, cpd.tangential_weight);
   cpd.match_extents = config.Flag("match_extents", cpd.match_extents);
-  cpd.outlier_weight = config.Number("outlier_weight", {0, 1, false, true}, cpd.outlier_weight);
+  cpd.outlier_weight =
+      config.Number("outlier_weight", {CpdOptions::kFewestOutliers, CpdOptions::kMostOutliers},
+                    cpd.outlier_weight);
   cpd.estimate_outlier_weight = config.Flag("estimate_outlier_weight", cpd.estimate_outlier_weight);
   cpd.initial_sigma = config.Quantity("initial_sigma", kLength, kNotNegative, cpd.initial_sigma);
   cpd.sigma_floor = config.Number("sigma_floor", kPositive, cpd.sigma_floor);
@@ -55,6 +60,9 @@ ForceSettings ReadForces(const Config& config, const std::filesystem::path& data
   if (forces.hold_net_force && forces.kind == Kind::kFree)
     config.Fail("hold_net_force",
                 "needs smooth forces; free forces have no basis that could be restricted");
+  if (forces.hold_net_force && forces.kind == Kind::kFootprint)
+    config.Fail("hold_net_force",
+                "leaves no force of a footprint, which is one net force; choose smooth forces");
   return forces;
 }
 
@@ -97,26 +105,68 @@ std::vector<int> ReadFrames(const Config& config, const Recording& recording) {
   return chosen;
 }
 
-void ReadValidation(const Config& config, ValidationSettings* validation) {
+// Reads the known answers once, so that a file that is missing or has the wrong shape is reported
+// before the computation rather than after it.
+void CheckKnownAnswers(const Config& entry, const ValidationSettings& validation,
+                       const std::vector<int>& frames) {
+  const auto check = [&entry](const char* key, const std::filesystem::path& path,
+                              const auto& read) {
+    if (path.empty()) return;
+    if (!std::filesystem::exists(path)) entry.Fail(key, "there is no " + path.string());
+    try {
+      read();
+    } catch (const InputError& problem) {
+      entry.Fail(key, problem.what());
+    }
+  };
+  check("true_surfaces", validation.true_surfaces, [&] {
+    if (validation.true_surfaces.filename() != "truth")
+      throw InputError("expected the folder `truth` of a simulated recording");
+    for (const int frame : frames) ReadTrueSurface(validation, frame);
+  });
+  check("true_mesh", validation.true_mesh, [&] { ReadTetMesh(validation.true_mesh); });
+  check("true_positions", validation.true_positions,
+        [&] { ReadTruePositions(validation, frames); });
+  check("true_forces", validation.true_forces, [&] { ReadTrueForces(validation, frames); });
+}
+
+void ReadValidation(const Config& config, ReconstructionStudy* study) {
   const auto entry = config.OptionalChild("validation");
   if (!entry) return;
-  validation->hold_out_every = entry->Integer("hold_out_every", 0, 1000000, 0);
-  if (validation->hold_out_every == 1) entry->Fail("hold_out_every", "would hold out every point");
-  validation->true_surfaces = entry->Path("true_surfaces", "");
-  validation->true_positions = entry->Path("true_positions", "");
-  validation->true_mesh = entry->Path("true_mesh", "");
-  validation->true_forces = entry->Path("true_forces", "");
-  if (validation->true_positions.empty() != validation->true_mesh.empty())
+  ValidationSettings& validation = study->validation;
+  validation.hold_out_every = entry->Integer("hold_out_every", 0, 1000000, 0);
+  if (validation.hold_out_every == 1) entry->Fail("hold_out_every", "would hold out every point");
+  validation.true_surfaces = entry->Path("true_surfaces", "");
+  if (!validation.true_surfaces.has_filename())  // a slash at the end
+    validation.true_surfaces = validation.true_surfaces.parent_path();
+  validation.true_positions = entry->Path("true_positions", "");
+  validation.true_mesh = entry->Path("true_mesh", "");
+  validation.true_forces = entry->Path("true_forces", "");
+  if (validation.true_positions.empty() != validation.true_mesh.empty())
     entry->Fail("true_positions", "needs true_mesh, and the reverse");
-  // Missing files are reported before the computation rather than after it.
-  const auto require = [&entry](const char* key, const std::filesystem::path& path) {
-    if (!path.empty() && !std::filesystem::exists(path))
-      entry->Fail(key, "there is no " + path.string());
+  CheckKnownAnswers(*entry, validation, study->frames);
+}
+
+// Refuses to estimate a noise that the recording cannot show (point_noise.h). Only a fit of forces
+// needs it.
+void RequireNoise(const Config& config, const ReconstructionStudy& study) {
+  if (!study.follow.forces.AreFitted() || study.follow.noise > 0 || IsScan(study.recording)) return;
+  const auto refuse = [&config](const std::string& reason) {
+    const std::string message = "must be given: " + reason;
+    if (const auto fit = config.OptionalChild("fit")) fit->Fail("noise", message);
+    config.Fail("fit", "noise " + message);
   };
-  require("true_surfaces", validation->true_surfaces);
-  require("true_positions", validation->true_positions);
-  require("true_mesh", validation->true_mesh);
-  require("true_forces", validation->true_forces);
+  if (study.follow.use_identity) {
+    if (study.frames.size() < kFewestNoiseFrames)
+      refuse(
+          fmt::format("the noise of tracked points is estimated from their tracks over at least "
+                      "{} frames; {} are followed",
+                      kFewestNoiseFrames, study.frames.size()));
+  } else if (!HasTrackedPoints(study.recording)) {
+    refuse(
+        "with `use_identity: false` the noise is estimated from planes through neighbouring "
+        "points, for which markers are too far apart");
+  }
 }
 
 // Known forces need a region and must cover the frames. Warns where measured forces are not used.
@@ -185,7 +235,8 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
   study.effects = ReadEffects(config);
   study.follow = ReadFollow(config, study.recording.data.folder);
   if (study.follow.forces.region) AddFileOf(*study.follow.forces.region, &study.recording);
-  ReadValidation(config, &study.validation);
+  ReadValidation(config, &study);
+  RequireNoise(config, study);
   config.RefuseUnknownKeys();
   if (study.frames.size() < 2 && study.recording.reference.source == ReferenceSource::kFirstFrame) {
     config.Fail("recording",

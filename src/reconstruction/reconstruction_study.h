@@ -15,6 +15,7 @@
 #include "experiment/model_reader.h"
 #include "fem/simulate.h"
 #include "fit/force_fit.h"
+#include "reconstruction/known_answers.h"
 #include "registration/coherent_point_drift.h"
 #include "scan/filter.h"
 #include "scan/recording.h"
@@ -34,6 +35,8 @@ struct ForceSettings {
   // The masses in the initial guess F = m α: 1 kg at each node, as in the paper, or the lumped
   // masses of the FEM.
   bool unit_pseudo_mass = false;
+
+  bool AreFitted() const { return kind != Kind::kNone && kind != Kind::kKnown; }
 };
 
 struct FollowSettings {
@@ -42,7 +45,9 @@ struct FollowSettings {
       false;  // accept steps with inverted elements, as linear elasticity may need
   ForceSettings forces;
   ForceFitOptions fit;
-  double noise = 0;  // m, σ of a scanned point; 0: estimated
+  // m, σ of a scanned point, or of a coordinate of a marker or tracked point that identifies
+  // itself; 0: estimated (point_noise.h). Not used where no forces are fitted.
+  double noise = 0;
   // m, a lower bound of the σ of a CPD correspondence along the surface. Points of two scans are
   // not the same material points, so that CPD slides along a featureless surface by more than its
   // own deviation suggests. 0: 3 % of the object's size. Larger: forces along the surface become
@@ -57,15 +62,6 @@ struct FollowSettings {
   // For tracked points and markers: whether row i is the same material point in every frame.
   // Otherwise correspondences are found by CPD.
   bool use_identity = true;
-};
-
-// Independent data that a reconstruction is checked against. They do not enter the fit.
-struct ValidationSettings {
-  int hold_out_every = 0;                // hold out every k-th tracked point from the fit; 0: none
-  std::filesystem::path true_surfaces;   // the truth/ folder of a virtual scan
-  std::filesystem::path true_positions;  // .npy, frames × points × 3, m
-  std::filesystem::path true_mesh;       // the tet mesh with these points as nodes
-  std::filesystem::path true_forces;     // .npy, frames × 3, N, resultant force
 };
 
 struct ReconstructionStudy {

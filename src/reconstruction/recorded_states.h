@@ -3,6 +3,7 @@
 #ifndef LACUNA_RECONSTRUCTION_RECORDED_STATES_H_
 #define LACUNA_RECONSTRUCTION_RECORDED_STATES_H_
 
+#include <string>
 #include <vector>
 
 #include "core/progress.h"
@@ -22,6 +23,16 @@ ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameSta
 
 // Whether the first frame is the reference shape itself, so that it need not be followed.
 bool FirstFrameIsReference(const ReconstructionStudy& study);
+
+// Whether the states hold tracked points that identify themselves, so that no registration is
+// needed to know where a point of the body is.
+bool HasIdentifiedPoints(const ReconstructionStudy& study, const std::vector<FrameState>& states);
+
+// The notes of the states as warnings that name the frame. Notes that differ in their numbers only
+// become one warning, which says how many other frames have such a note, and up to which; those
+// that the recording's own warnings contain are left out.
+std::vector<std::string> WarningsOfStates(const ReconstructionStudy& study,
+                                          const std::vector<FrameState>& states);
 
 }  // namespace lacuna
 

@@ -3,9 +3,12 @@
 #include <glog/logging.h>
 
 #include <iterator>
+#include <utility>
 
 #include "effects/gravity.h"
 #include "geometry/thinned_surface.h"
+#include "reconstruction/recorded_states.h"
+#include "reconstruction/residual_at_vertices.h"
 #include "record/thinning_notes.h"
 
 namespace lacuna {
@@ -40,10 +43,14 @@ MotionRecord ShownReconstruction(const ReconstructionStudy& study,
   const auto count = static_cast<Eigen::Index>(chosen.size());
   shown.times.resize(count);
   shown.positions.resize(3 * vertices, count);
-  shown.fields = {
-      {"residual", "distance from the registered scan", "m", Eigen::MatrixXd(vertices, count)},
-      {"displacement", "displacement", "m", Eigen::MatrixXd(vertices, count)},
-      {"force", "fitted force at a node", "N", Eigen::MatrixXd(vertices, count)}};
+  ShownField residual{"residual",
+                      HasIdentifiedPoints(study, states)
+                          ? "distance from the nearest tracked point's place"
+                          : "distance from the registered scan",
+                      "m", Eigen::MatrixXd(vertices, count)};
+  const ResidualAtVertices residuals(study, states, motion);
+  shown.fields = {{"displacement", "displacement", "m", Eigen::MatrixXd(vertices, count)},
+                  {"force", "fitted force at a node", "N", Eigen::MatrixXd(vertices, count)}};
   for (Eigen::Index f = 0; f < count; ++f) {
     const size_t k = usable[static_cast<size_t>(chosen[static_cast<size_t>(f)])];
     const FollowedFrame& frame = motion.frames[k];
@@ -52,11 +59,14 @@ MotionRecord ShownReconstruction(const ReconstructionStudy& study,
     };
     shown.times[f] = frame.time;
     shown.positions.col(f) = Eigen::Matrix3Xd(frame.position(Eigen::all, nodes)).reshaped();
-    shown.fields[0].values.col(f) = lengths(frame.residual, thinned.kept);
-    shown.fields[1].values.col(f) = lengths(frame.position - body.mesh.nodes, nodes);
-    shown.fields[2].values.col(f) = lengths(frame.force, nodes);
+    residual.values.col(f) = lengths(residuals.Of(frame), thinned.kept);
+    shown.fields[0].values.col(f) = lengths(frame.position - body.mesh.nodes, nodes);
+    shown.fields[1].values.col(f) = lengths(frame.force, nodes);
     shown.scans.push_back(states[k].cloud.points);
   }
+  // A report lists the fields in this order.
+  if (!residual.values.array().isNaN().all())
+    shown.fields.insert(shown.fields.begin(), std::move(residual));
   shown.notes = NotesOnThinning(vertices, body.boundary.surface.vertices.cols(), count,
                                 std::ssize(motion.frames));
   return shown;

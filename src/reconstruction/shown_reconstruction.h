@@ -12,8 +12,9 @@
 namespace lacuna {
 
 // The frames that could be followed, evenly thinned to kMostShownFrames: the surface with the
-// fields residual (the length of align(p, S) − p, Eq. 1), displacement and force at a node, and the
-// scanned points. At least one frame must have been followed (CHECK).
+// fields residual (the length of D, Eq. 1, as ResidualAtVertices gives it; absent where no frame
+// has it), displacement and force at a node, and the scanned points. At least one frame must have
+// been followed (CHECK).
 MotionRecord ShownReconstruction(const ReconstructionStudy& study,
                                  const std::vector<FrameState>& states,
                                  const FollowedMotion& motion);

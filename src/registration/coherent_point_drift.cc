@@ -152,6 +152,8 @@ CpdResult RegisterNonrigid(const PointCloud& source, const PointCloud& target,
                            const CpdOptions& options, const DisplacementField* warm_start) {
   CHECK(options.kernels != nullptr);
   CHECK_GT(options.lambda, 0.0);
+  CHECK_GE(options.outlier_weight, CpdOptions::kFewestOutliers);
+  CHECK_LE(options.outlier_weight, CpdOptions::kMostOutliers);
   CHECK_GT(options.points_per_function, 0);
   CHECK_GE(options.max_rank, 4);
   if (const auto refusal = Refusal("source", source)) return *refusal;

@@ -50,9 +50,11 @@ struct CpdResult {
   Eigen::VectorXd inlier;  // N: probability that each target point belongs to the source
   double sigma = 0.0;      // m: final standard deviation σ of the Gaussians
   double noise = 0.0;      // m: rms distance of the target points along the normals
-  double outlier_weight = 0.0;  // fraction of target points that belong to no source point
-  int iterations = 0;           // total over all levels
-  int rank = 0;                 // number of basis functions
+  // Fraction of target points that belong to no source point, CpdOptions::kFewestOutliers …
+  // kMostOutliers.
+  double outlier_weight = 0.0;
+  int iterations = 0;  // total over all levels
+  int rank = 0;        // number of basis functions
 };
 
 // Registers `source` onto `target`. Normals of the source are used if given and estimated from its

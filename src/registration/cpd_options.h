@@ -19,6 +19,11 @@ struct CpdProgress {
 
 // The unit "size" below is the rms distance of the source points from their mean.
 struct CpdOptions {
+  // The range of the outlier weight. At 0 or 1 its estimate could not recover, and at 0 a point far
+  // from all others would have no weight at all.
+  static constexpr double kFewestOutliers = 1e-3;
+  static constexpr double kMostOutliers = 0.8;
+
   // Width β of the kernel, in sizes. Raising it makes the motion stiffer, needs fewer basis
   // functions, and lets missing parts follow from a greater distance.
   double beta = 1.5;
@@ -40,8 +45,9 @@ struct CpdOptions {
   // that both show the whole body. Otherwise start without displacement. A warm start takes
   // precedence.
   bool match_extents = false;
-  // Probability that a target point belongs to no source point: the initial value if it is
-  // estimated, else the value throughout.
+  // Probability that a target point belongs to no source point, kFewestOutliers … kMostOutliers:
+  // the initial value if it is estimated (the estimate stays in this range), else the value
+  // throughout.
   double outlier_weight = 0.1;
   bool estimate_outlier_weight = true;
   // Initial σ, m; 0 derives it from the distances between the clouds. Raise it for larger motions.

@@ -13,10 +13,6 @@
 namespace lacuna {
 namespace {
 
-// The range of the outlier weight during the iterations. At 0 or 1 its estimate could not recover.
-constexpr double kFewestOutliers = 1e-3;
-constexpr double kMostOutliers = 0.8;
-
 // The volume over which outliers are uniformly distributed: the target's bounding box, with a
 // minimum thickness for a flat target.
 double OutlierVolume(const Eigen::Matrix3Xd& target) {
@@ -167,9 +163,8 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
     ++drift->iterations;
     sigma = drift->sigma;
     source.Move(rest_single + displacement);
-    const double outliers = std::clamp(drift->outlier_weight, kFewestOutliers, kMostOutliers);
-    drift->posterior = ComputePosterior(source, {sigma, outliers, volume, options.cutoff},
-                                        *options.kernels, &target);
+    drift->posterior = ComputePosterior(
+        source, {sigma, drift->outlier_weight, volume, options.cutoff}, *options.kernels, &target);
     drift->has_overlap = drift->posterior.total_weight > std::max(3.0, 0.01 * target_count);
     if (!drift->has_overlap) return;
 
@@ -201,7 +196,8 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
     drift->sigma =
         std::max(level.floor, NextSigma(drift->posterior, sigma, options.tangential_weight));
     if (options.estimate_outlier_weight) {
-      drift->outlier_weight = 1.0 - drift->posterior.total_weight / target_count;
+      drift->outlier_weight = std::clamp(1.0 - drift->posterior.total_weight / target_count,
+                                         CpdOptions::kFewestOutliers, CpdOptions::kMostOutliers);
     }
     ReportProgress(clouds, options, *drift, static_cast<int>(rest.cols()), change);
     drift->converged = drift->sigma > 0.97 * sigma && change < tolerance;

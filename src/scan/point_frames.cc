@@ -184,6 +184,18 @@ std::string DoubtOfPlaces(const CorrelationTable& first, const CorrelationTable&
   return "";
 }
 
+// Brings the normals of the file into the world frame. Notes it where they cannot be used. Only
+// those of scans are estimated later.
+void UseGivenNormals(const PointFrames& source, const std::filesystem::path& file, Frame* frame) {
+  const Eigen::Index given = frame->cloud.normals.cols();
+  const Eigen::Index zero = (frame->cloud.normals.colwise().norm().array() == 0).count();
+  frame->cloud.normals = UnitNormals(frame->cloud.normals, source.world_from_file.rotation);
+  if (zero > 0)
+    frame->notes.push_back(fmt::format(
+        "{}: {} of {} normals are zero, so that none of the given ones is used{}", file.string(),
+        zero, given, source.tracked ? "" : ": all are estimated from the points"));
+}
+
 }  // namespace
 
 void ReadSource(const Config& frames, const DataLocation& data, PointFrames* source,
@@ -252,7 +264,7 @@ void LoadPoints(const PointFrames& source, Frame* frame) {
   raw.points = source.world_from_file * raw.points;
   ForgetOtherObjects(source, source.connectivity, &raw.points, frame);
   KeepUsablePoints(raw, source.connectivity, frame);
-  frame->cloud.normals = UnitNormals(frame->cloud.normals, source.world_from_file.rotation);
+  UseGivenNormals(source, file, frame);
   if (correlation.sigma.size() > 0) frame->sigma = correlation.sigma(frame->source_row);
   frame->sensors.positions = source.sensors;
   RequirePoints(*frame, kFewestScannedPoints, "is finite");

@@ -47,12 +47,21 @@ void ReadPath(const Config& path, const DataLocation& data, const FrameData& fra
 }  // namespace
 
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time) {
+  return MotionAt(grip, time, grip.times[0]);
+}
+
+Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time, double since) {
+  const auto displacement = [&grip](double at) {
+    return InterpolateSmoothly(grip.times, grip.displacements, at);
+  };
+  const auto rotation = [&grip](double at) {
+    return RotationBy(InterpolateSmoothly(grip.times, grip.rotations, at));
+  };
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  motion.translate(InterpolateSmoothly(grip.times, grip.displacements, time));
+  motion.translate(displacement(time) - displacement(since));
   if (grip.rotations.cols() == 0) return motion;
   motion.translate(grip.pivot);
-  motion.rotate(RotationBy(InterpolateSmoothly(grip.times, grip.rotations, time)) *
-                RotationBy(grip.rotations.col(0)).transpose());
+  motion.rotate(rotation(time) * rotation(since).transpose());
   motion.translate(-grip.pivot);
   return motion;
 }

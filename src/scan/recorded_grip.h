@@ -47,7 +47,10 @@ struct RecordedGrip {
 
 // The rigid motion of a grip of motion kGiven from its undeformed place. Between the given times it
 // is interpolated smoothly (time_series.h), because a path with corners would excite vibrations.
+// The grip is at its undeformed place at the time `since` (s), or where none is given in the first
+// row of its path.
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time);
+Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time, double since);
 
 // Reads `placement: {shift_deviation: 1 mm, turn_deviation: 1 deg}` of a held part, of which at
 // least one must be above 0; without it the placement is exact. The part must be held along all

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "geometry/tri_mesh.h"
 #include "scan/depth_frames.h"
@@ -26,8 +27,12 @@ using FrameWriter = std::string (*)(const std::filesystem::path& folder, const V
 void WriteScan(const std::filesystem::path& folder, const std::string& name,
                const RecordedObject& object, const VirtualScan& scan, FrameWriter write_frames);
 
-// The exact surface behind frame i of such a folder. Only for judging results.
+// The exact surface behind frame i of such a folder. Only for judging results. Throws InputError
+// where a file cannot be read or is not such an array.
 TriMesh ReadTrueSurface(const std::filesystem::path& folder, int i);
+// The files that it reads for these frames, each once.
+std::vector<std::filesystem::path> FilesOfTrueSurfaces(const std::filesystem::path& folder,
+                                                       const std::vector<int>& frames);
 
 }  // namespace lacuna
 

@@ -115,6 +115,37 @@ TEST_F(CarriedByMarkers, DoesNotTurnAboutTheLineOfTwo) {
   EXPECT_LT((at_middle_ - rest_).norm(), 1e-12);
 }
 
+// A body that is undeformed at some time of the path is carried from there on, about a point that
+// is given at its place in the undeformed body.
+TEST(RecordedGrips, OnAPathCountFromTheTimeAtWhichTheBodyIsUndeformed) {
+  Recording recording;
+  recording.times = {0, 1, 2};
+  RecordedGrip grip;
+  grip.region = {"hand", HalfSpaceRegion{{0.002, 0, 0}, {-1, 0, 0}}};
+  grip.motion = GripMotion::kGiven;
+  grip.times = Eigen::Vector3d(0, 1, 2);
+  grip.displacements.resize(3, 3);
+  grip.displacements << 0, 0, 0, 0, 0.01, 0.03, 0, 0, 0;
+  grip.rotations = Eigen::Matrix3Xd::Zero(3, 3);
+  grip.rotations.row(2) << 0.3, 0.5, 0.6;
+  grip.pivot = {0, 0.01, 0};
+  recording.object.grips = {grip};
+  const TetMesh mesh = BarMesh({4, 1, 1}, 1);
+  Model model;
+  model.body = std::make_shared<const Body>(MakeBody(mesh, 1000));
+  GripTracks tracks(recording, mesh, &model);
+  const Grip& held = model.grips.front();
+  const Eigen::Matrix3Xd rest = mesh.nodes(Eigen::all, held.nodes);
+  EXPECT_LT((held.motion(0) - rest).norm(), 1e-12) << "the first row of the path";
+  tracks.Begin(1);
+  EXPECT_LT((held.motion(1) - rest).norm(), 1e-12);
+  const Eigen::Isometry3d about = Eigen::Translation3d(grip.pivot) *
+                                  Eigen::Isometry3d(RotationBy({0, 0, 0.1})) *
+                                  Eigen::Translation3d(-grip.pivot);
+  const Eigen::Matrix3Xd moved = (about * rest).colwise() + Eigen::Vector3d(0, 0.02, 0);
+  EXPECT_LT((held.motion(2) - moved).norm(), 1e-12);
+}
+
 TEST(RecordedGrips, AreRefusedWhereTheLastFrameDoesNotShowThem) {
   const TemporaryFolder folder;
   std::vector<Eigen::Matrix3Xd> markers(kFrames, BarMarkerPlaces());

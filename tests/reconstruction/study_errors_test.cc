@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string>
 
+#include "core/npy.h"
 #include "experiment/scene.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_study.h"
@@ -14,9 +15,9 @@
 namespace lacuna {
 namespace {
 
-// The message that reading the demo's experiment gives after one change.
-std::string MessageAfter(const std::string& from, const std::string& to) {
-  const TemporaryFolder folder;
+// The message that reading the demo's experiment, written into a folder, gives after one change.
+std::string MessageAfter(const TemporaryFolder& folder, const std::string& from,
+                         const std::string& to) {
   const std::filesystem::path experiments =
       std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments";
   std::string text = FileContent(experiments / "bend.yaml");
@@ -37,6 +38,9 @@ std::string MessageAfter(const std::string& from, const std::string& to) {
     return problem.what();
   }
   return "nothing was refused";
+}
+std::string MessageAfter(const std::string& from, const std::string& to) {
+  return MessageAfter(TemporaryFolder(), from, to);
 }
 
 using testing::ContainsRegex;
@@ -70,6 +74,44 @@ TEST(StudyErrors, NameTheLineAndTheField) {
               ContainsRegex("e.yaml:[0-9]+:[0-9]+: name: names a folder"));
   EXPECT_THAT(MessageAfter("output: ../results/bend ", "output: \"\" "),
               HasSubstr("output: is empty"));
+  EXPECT_THAT(MessageAfter("seed: 1", "registration: {outlier_weight: 0.9}"),
+              HasSubstr("registration.outlier_weight: got \"0.9\""));
+  EXPECT_EQ(MessageAfter("seed: 1", "registration: {outlier_weight: 0.8}"), "nothing was refused");
+  EXPECT_THAT(MessageAfter("model: smooth",
+                           "hold_net_force: true, model: footprint, region: "
+                           "{sphere: {center: [0, 0, 0], radius: 1 m}}"),
+              HasSubstr("forces.hold_net_force: leaves no force of a footprint"));
+}
+
+TEST(StudyErrors, KnownAnswersAreCheckedBeforeTheRun) {
+  const TemporaryFolder folder;
+  WriteNpy(folder / "forces.npy", Eigen::MatrixXd::Zero(16, 2));
+  EXPECT_THAT(MessageAfter(folder, "validation: {",
+                           "validation: {true_forces: " + (folder / "forces.npy").string() + ", "),
+              ContainsRegex("e.yaml:[0-9]+:[0-9]+: validation.true_forces: .*forces.npy: is an "
+                            "array of 16 × 2; expected frames × 3"));
+  WriteNpy(folder / "forces.npy", Eigen::MatrixXd::Zero(16, 3));
+  EXPECT_EQ(MessageAfter(folder, "validation: {",
+                         "validation: {true_forces: " + (folder / "forces.npy").string() + ", "),
+            "nothing was refused");
+  // The folder lacks the surfaces of the frames.
+  std::filesystem::create_directories(folder / "truth");
+  const std::filesystem::path truth =
+      std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend/truth";
+  EXPECT_THAT(MessageAfter(folder, truth.string(), (folder / "truth").string()),
+              ContainsRegex("validation.true_surfaces: .*triangles.npy"));
+  // Every surface is read, the last one, too.
+  std::filesystem::copy(truth, folder / "truth");
+  WriteNpy(folder / "truth/vertices_015.npy", Eigen::MatrixXd::Zero(2, 5));
+  EXPECT_THAT(MessageAfter(folder, truth.string(), (folder / "truth").string()),
+              ContainsRegex("validation.true_surfaces: .*vertices_015.npy: is an array of 2 × 5"));
+}
+
+// The surfaces are sound, and checked before the other files.
+TEST(StudyErrors, AMissingKnownAnswerIsReportedUnderItsOwnKey) {
+  EXPECT_THAT(MessageAfter("validation: {", "validation: {true_forces: absent.npy, "),
+              ContainsRegex("e.yaml:[0-9]+:[0-9]+: validation.true_forces: there is no "
+                            ".*absent.npy"));
 }
 
 TEST(StudyErrors, TheUnchangedExperimentIsSound) {

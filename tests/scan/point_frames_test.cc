@@ -42,6 +42,21 @@ TEST_F(RecordingTest, PointFramesReadNormalsSensorsAndColumns) {
   EXPECT_FALSE(HasTrackedPoints(recording));
 }
 
+TEST_F(RecordingTest, NotesThatAZeroNormalDiscardsAllGivenOnes) {
+  folder_.Write("p.csv", "x,y,z,nx,ny,nz\n" + std::string("0,0,0,0,0,1\n9,0,0,0,0,0\n") +
+                             "0,9,0,0,0,1\n9,9,1,0,0,1\n");
+  const Recording recording = Load(Yaml("  {kind: points, files: [p.csv]}\n"));
+  EXPECT_FALSE(LoadFrame(recording, 0).cloud.HasNormals());
+  EXPECT_THAT(recording.warnings,
+              testing::Contains(HasSubstr("p.csv: 1 of 4 normals are zero, so that none of the "
+                                          "given ones is used: all are estimated")));
+  // Tracked points get no normals.
+  const Frame tracked =
+      LoadFrame(Load(Yaml("  {kind: points, files: [p.csv], tracked: true}\n")), 0);
+  EXPECT_FALSE(tracked.cloud.HasNormals());
+  EXPECT_THAT(tracked.notes, testing::ElementsAre(testing::EndsWith("of the given ones is used")));
+}
+
 // The lines of a table in which `zeros` of the points are (0, 0, 0).
 std::string WithZeros(int points, int zeros) {
   std::string text = "x,y,z\n" + Cloud(points, 200);

@@ -1,0 +1,33 @@
+#include "reconstruction/residual_at_vertices.h"
+
+#include <limits>
+
+#include "geometry/nearest.h"
+#include "reconstruction/recorded_states.h"
+
+namespace lacuna {
+
+ResidualAtVertices::ResidualAtVertices(const ReconstructionStudy& study,
+                                       const std::vector<FrameState>& states,
+                                       const FollowedMotion& motion)
+    : are_identified_(HasIdentifiedPoints(study, states)),
+      vertices_(motion.body->boundary.node.size()) {
+  if (!are_identified_) return;
+  const Eigen::Matrix3Xd& tracked = states.front().tracked;
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index j = 0; j < tracked.cols(); ++j)
+    if (tracked.col(j).allFinite()) seen.push_back(j);
+  if (seen.empty()) return;
+  const PointHits near =
+      PointSearch(tracked(Eigen::all, seen)).Nearest(motion.body->boundary.surface.vertices);
+  for (const int point : near.index.row(0)) nearest_.push_back(seen[static_cast<size_t>(point)]);
+}
+
+Eigen::Matrix3Xd ResidualAtVertices::Of(const FollowedFrame& frame) const {
+  if (!are_identified_) return frame.residual;
+  if (nearest_.empty())
+    return Eigen::Matrix3Xd::Constant(3, vertices_, std::numeric_limits<double>::quiet_NaN());
+  return frame.residual(Eigen::all, nearest_);
+}
+
+}  // namespace lacuna
