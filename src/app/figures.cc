@@ -40,7 +40,7 @@ bool Told(int figure, const std::string& text, const PictureResult& picture) {
 
 bool MakeDrop(const Arguments& arguments, Progress* progress) {
   const DropStudy study = ReadDrop(Config::Load(fs::path(arguments.folder) / "figure1.yaml"));
-  const std::vector<DropRun> runs = RunDrop(study, progress);
+  const std::vector<DropRun> runs = RunDrop(study, fs::path(arguments.output) / "drop", progress);
   return Told(1, DropText(runs), WriteDropFigure(study, runs, arguments.output));
 }
 
@@ -52,24 +52,21 @@ bool MakeOthers(const Arguments& arguments, Progress* progress) {
   const Table1Scans scans =
       PrepareScans(table1, settings, arguments.table1, arguments.output, progress);
   bool all = true;
-  const auto make = [&](int figure, const FigureContent& content) {
-    const std::string name = fmt::format("figure{}", figure);
-    all = Told(figure, content.text, WriteFigure(content, name, arguments.output)) && all;
+  const auto make = [&](int figure, const std::string& name, const auto& draw) {
+    if (!IsWanted(arguments, figure)) return;
+    try {
+      const FigureContent content = draw();
+      all = Told(figure, content.text, WriteFigure(content, name, arguments.output)) && all;
+    } catch (const InputError& problem) {
+      fmt::print(stderr, "lacuna: figure {} was not drawn: {}\n", figure, problem.what());
+      all = false;
+    }
   };
-  if (IsWanted(arguments, 3)) make(3, DrawCloudAndSurface(scans, settings));
-  if (IsWanted(arguments, 4)) {
-    make(4, DrawMeshes(table1, scans, settings));
-    const FigureContent own = DrawOwnSurfaceMeshes(table1, scans, settings);
-    all = Told(4, own.text, WriteFigure(own, "figure4_own_surface", arguments.output)) && all;
-  }
-  if (IsWanted(arguments, 5)) make(5, DrawBend(table1, scans, settings));
-  if (!IsWanted(arguments, 6)) return all;
-  try {
-    make(6, DrawAlignment(table1, scans, settings, arguments.table1));
-  } catch (const InputError& problem) {
-    fmt::print(stderr, "lacuna: figure 6 was not drawn: {}\n", problem.what());
-    all = false;
-  }
+  make(3, "figure3", [&] { return DrawCloudAndSurface(scans, settings); });
+  make(4, "figure4", [&] { return DrawMeshes(table1, scans, settings); });
+  make(4, "figure4_own_surface", [&] { return DrawOwnSurfaceMeshes(table1, scans, settings); });
+  make(5, "figure5", [&] { return DrawBend(table1, scans, settings); });
+  make(6, "figure6", [&] { return DrawAlignment(table1, scans, settings, arguments.table1); });
   return all;
 }
 

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <new>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "core/memory_limit.h"
@@ -34,7 +35,8 @@ constexpr double kClosestVertices = 10 * kTetGenTolerance;
 constexpr double kFlatAngle = 179.9999;
 
 // The most tetrahedra that may be requested. With about 1 kB per tetrahedron for meshing and
-// simulation, more would not fit into the memory of a workstation.
+// simulation, more would not fit into the memory of a workstation. The limit is the same on every
+// machine, so that it may count as a failure of the mesh.
 constexpr double kMostTets = 2e7;
 // What TetGen occupies for each tetrahedron of the least number, volume over max_volume: a block of
 // 0.65 million tetrahedra, twice the least number, took 0.26 GB.
@@ -172,10 +174,14 @@ std::string TooCloseVertices(const TriMesh& surface, double size) {
       place.x(), place.y(), place.z(), gap(closest), size);
 }
 
+[[noreturn]] void ThrowOutOfMemory() {
+  throw OutOfMemory(std::string("TetGen ran out of memory; ") + kCoarserMesh);
+}
+
 void FailByCode(int code, MeshResult& result) {
   switch (code) {
     case kTetGenOutOfMemory:
-      return Fail(MeshStatus::kOutOfMemory, "TetGen ran out of memory", result);
+      ThrowOutOfMemory();
     case kTetGenSelfIntersection:
       return Fail(MeshStatus::kFaultySurface, "TetGen found that the surface intersects itself",
                   result);
@@ -221,7 +227,7 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
   const double least_tets =
       options.max_volume > 0 ? result.surface_report.volume / options.max_volume : 0;
   if (least_tets > kMostTets) {
-    Fail(MeshStatus::kOutOfMemory,
+    Fail(MeshStatus::kTooManyTets,
          fmt::format(
              "max_volume requires at least {:.0f} million tetrahedra; at most {:.0f} million "
              "are allowed",
@@ -246,8 +252,7 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
     FailByCode(code, result);
     return result;
   } catch (const std::bad_alloc&) {
-    FailByCode(kTetGenOutOfMemory, result);
-    return result;
+    ThrowOutOfMemory();
   }
   if (output.numberoftetrahedra == 0) {
     Fail(MeshStatus::kInternalError, "TetGen returned no tetrahedra", result);

@@ -37,7 +37,7 @@ enum class MeshStatus {
   kUsable,
   kFaultySurface,    // open, non-manifold, inside out or self-intersecting: see `surface_report`
   kTooSmallFeature,  // parts of the surface are too close to each other for TetGen
-  kOutOfMemory,      // memory ran out, or the bounds would require too many tetrahedra
+  kTooManyTets,      // the bounds would require more tetrahedra than the limit, 20 million
   kInternalError,    // TetGen failed or returned an invalid mesh
 };
 
@@ -58,7 +58,8 @@ struct MeshResult {
 // mesh, bit by bit. A coarse surface that must be preserved, or sharp angles between its edges, can
 // prevent a bound from being met everywhere; `quality` and `notes` then say so, but the mesh is
 // still usable. Failures are reported in `status` and `message`; options out of their ranges are
-// programming errors (CHECK). Throws OutOfMemory (core/memory_limit.h).
+// programming errors (CHECK). Throws OutOfMemory (core/memory_limit.h) where the mesh would exceed
+// the memory limit or an allocation fails: unlike a failure, this depends on the machine.
 MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options);
 
 }  // namespace lacuna

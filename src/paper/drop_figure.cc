@@ -16,22 +16,21 @@ namespace lacuna {
 namespace {
 
 struct Column {
-  const char* name;   // in tables
-  const char* field;  // in JSON, SI
+  const char* name;
   double DropNumbers::*value;
   double scale;  // from SI to the unit of `name`
   const char* format;
 };
 constexpr std::array<Column, 9> kColumns{{
-    {"touch ms", "touch_time_s", &DropNumbers::touch_time, 1e3, "{:.3f}"},
-    {"contact ms", "contact_time_s", &DropNumbers::contact_time, 1e3, "{:.2f}"},
-    {"compression %", "compression", &DropNumbers::compression, 1e2, "{:.2f}"},
-    {"peak force N", "peak_force_N", &DropNumbers::peak_force, 1, "{:.1f}"},
-    {"rebound m/s", "rebound_speed_m_per_s", &DropNumbers::rebound_speed, 1, "{:.4f}"},
-    {"rebound mm", "rebound_height_m", &DropNumbers::rebound_height, 1e3, "{:.1f}"},
-    {"frequency Hz", "frequency_Hz", &DropNumbers::frequency, 1, "{:.2f}"},
-    {"energy growth", "energy_growth", &DropNumbers::energy_growth, 1, "{:.1e}"},
-    {"energy left %", "energy_left", &DropNumbers::energy_left, 1e2, "{:.1f}"},
+    {"touch ms", &DropNumbers::touch_time, 1e3, "{:.3f}"},
+    {"contact ms", &DropNumbers::contact_time, 1e3, "{:.2f}"},
+    {"compression %", &DropNumbers::compression, 1e2, "{:.2f}"},
+    {"peak force N", &DropNumbers::peak_force, 1, "{:.1f}"},
+    {"rebound m/s", &DropNumbers::rebound_speed, 1, "{:.4f}"},
+    {"rebound mm", &DropNumbers::rebound_height, 1e3, "{:.1f}"},
+    {"frequency Hz", &DropNumbers::frequency, 1, "{:.2f}"},
+    {"energy growth", &DropNumbers::energy_growth, 1, "{:.1e}"},
+    {"energy left %", &DropNumbers::energy_left, 1e2, "{:.1f}"},
 }};
 // Whether the relative change of a column is meaningful.
 bool IsCompared(const Column& column) {
@@ -106,7 +105,7 @@ PanelSurface Floor(const Eigen::AlignedBox3d& box, double height) {
   return floor;
 }
 
-size_t FrameAt(const SceneMotion& motion, double time) {
+size_t FrameAt(const DropMotion& motion, double time) {
   size_t nearest = 0;
   for (size_t k = 0; k < motion.times.size(); ++k)
     if (std::abs(motion.times[k] - time) < std::abs(motion.times[nearest] - time)) nearest = k;
@@ -130,15 +129,6 @@ void WriteHeights(const std::vector<DropRun>& runs, const std::filesystem::path&
   WriteLineChart(file, {"Height of the dropped body", "time, ms", "mm", lines});
 }
 
-nlohmann::json JsonOf(const DropNumbers& numbers) {
-  nlohmann::json json;
-  for (const Column& column : kColumns) {
-    const double value = numbers.*column.value;
-    json[column.field] = std::isnan(value) ? nlohmann::json() : nlohmann::json(value);
-  }
-  return json;
-}
-
 nlohmann::json JsonOf(const std::vector<DropRun>& runs) {
   nlohmann::json json = nlohmann::json::array();
   for (const DropRun& run : runs) {
@@ -147,8 +137,8 @@ nlohmann::json JsonOf(const std::vector<DropRun>& runs) {
                     {"tetrahedra", run.motion.body->ElementCount()},
                     {"order", run.mesh.settings.order},
                     {"volume_m3", run.motion.body->weight.sum()},
-                    {"numbers", JsonOf(run.numbers)},
-                    {"numbers_with_halved_steps", JsonOf(run.halved)}});
+                    {"numbers", ToJson(run.numbers)},
+                    {"numbers_with_halved_steps", ToJson(run.halved)}});
   }
   return json;
 }

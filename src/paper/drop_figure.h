@@ -1,4 +1,5 @@
-// Output of Figure 1 of Transue & Choi 2015 (drop_study.h): pictures, a chart, a table and JSON.
+// Output of Figure 1 of Transue & Choi 2015 (paper/drop_study.h): pictures, a chart, a table and
+// JSON.
 #ifndef LACUNA_PAPER_DROP_FIGURE_H_
 #define LACUNA_PAPER_DROP_FIGURE_H_
 
@@ -6,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "paper/drop_study.h"
+#include "paper/drop_run.h"
 #include "report/panel_picture.h"
 
 namespace lacuna {

@@ -1,17 +1,35 @@
 #include "paper/drop_study.h"
 
-#include <fmt/format.h>
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
+#include "core/json_number.h"
 #include "effects/gravity.h"
 #include "effects/plane_contact.h"
 
 namespace lacuna {
 namespace {
+
+// The numbers by their names in JSON.
+struct NamedNumber {
+  const char* name;
+  double DropNumbers::*value;
+};
+constexpr std::array<NamedNumber, 9> kNumbers{{
+    {"touch_time_s", &DropNumbers::touch_time},
+    {"contact_time_s", &DropNumbers::contact_time},
+    {"compression", &DropNumbers::compression},
+    {"peak_force_N", &DropNumbers::peak_force},
+    {"rebound_speed_m_per_s", &DropNumbers::rebound_speed},
+    {"rebound_height_m", &DropNumbers::rebound_height},
+    {"frequency_Hz", &DropNumbers::frequency},
+    {"energy_growth", &DropNumbers::energy_growth},
+    {"energy_left", &DropNumbers::energy_left},
+}};
 
 bool IsAlongZ(const Eigen::Vector3d& vector) { return vector.x() == 0 && vector.y() == 0; }
 
@@ -111,7 +129,9 @@ double SwingFrequency(const std::vector<DropState>& flight) {
 DropStudy ReadDrop(const Config& config) {
   DropStudy study;
   config.Integer("schema_version", 1, 1);
-  study.scene = ReadScene(Config::Load(config.Path("scene")));
+  const Config scene = Config::Load(config.Path("scene"));
+  study.scene = ReadScene(scene);
+  study.scene_configuration = scene.Resolved();
   const Effect* floor = FindPlaneContact(study.scene.effects);
   if (floor == nullptr || !IsAlongZ(ContactPlaneOf(*floor)->normal))
     config.Fail("scene", "has no plane_contact with a normal along z to fall on");
@@ -181,34 +201,25 @@ DropNumbers MeasureDrop(const Scene& scene, const SceneMotion& motion) {
   return numbers;
 }
 
+nlohmann::json ToJson(const DropNumbers& numbers) {
+  nlohmann::json json;
+  for (const NamedNumber& number : kNumbers)
+    json[number.name] = NumberOrNull<nlohmann::json>(numbers.*number.value);
+  return json;
+}
+
+DropNumbers DropNumbersFrom(const nlohmann::json& json) {
+  DropNumbers numbers;
+  for (const NamedNumber& number : kNumbers) numbers.*number.value = NumberOr(json.at(number.name));
+  return numbers;
+}
+
 Scene SceneOf(const DropStudy& study, const DropMesh& mesh, int step_divisor) {
   Scene scene = study.scene;
   scene.bar.edge_length = mesh.edge_length;
   scene.mesh = mesh.settings;
   scene.steps_per_frame *= step_divisor;
   return scene;
-}
-
-std::vector<DropRun> RunDrop(const DropStudy& study, Progress* progress) {
-  const auto simulate = [&](const Scene& scene, const DropMesh& mesh) {
-    SceneMotion motion = SimulateScene(scene, progress);
-    if (!motion.IsUsable()) {
-      throw InputError(fmt::format("the drop of {} nodes, order {}: {}", mesh.paper_nodes,
-                                   mesh.settings.order, motion.message));
-    }
-    return motion;
-  };
-  std::vector<DropRun> runs;
-  for (const DropMesh& mesh : study.meshes) {
-    DropRun run;
-    run.mesh = mesh;
-    const Scene scene = SceneOf(study, mesh, 1), halved = SceneOf(study, mesh, 2);
-    run.motion = simulate(scene, mesh);
-    run.numbers = MeasureDrop(scene, run.motion);
-    run.halved = MeasureDrop(halved, simulate(halved, mesh));
-    runs.push_back(std::move(run));
-  }
-  return runs;
 }
 
 }  // namespace lacuna

@@ -3,15 +3,14 @@
 //
 // The scene is an ordinary one (experiment/scene.h) with gravity and a floor normal to z, whose bar
 // falls from the start. It is simulated once with each mesh at the time step of the scene, and once
-// more at half of that step. All quantities are in SI units.
+// more at half of that step (paper/drop_run.h). All quantities are in SI units.
 #ifndef LACUNA_PAPER_DROP_STUDY_H_
 #define LACUNA_PAPER_DROP_STUDY_H_
 
-#include <string>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "core/config.h"
-#include "core/progress.h"
 #include "experiment/scene.h"
 #include "record/run_record.h"
 
@@ -25,6 +24,7 @@ struct DropMesh {
 
 struct DropStudy {
   Scene scene;
+  nlohmann::json scene_configuration;  // the scene's file, with defaults resolved, in SI units
   std::vector<DropMesh> meshes;
   std::vector<double> instants;  // s, to be drawn
 };
@@ -51,18 +51,13 @@ struct DropNumbers {
 // the body.
 DropNumbers MeasureDrop(const Scene& scene, const SceneMotion& motion);
 
-struct DropRun {
-  DropMesh mesh;
-  SceneMotion motion;  // at the scene's steps
-  DropNumbers numbers;
-  DropNumbers halved;  // the same with steps of half the length
-};
+// With the unit in the name of each number; null stands for kNotMeasured.
+nlohmann::json ToJson(const DropNumbers& numbers);
+// Throws nlohmann::json::exception if a number is absent.
+DropNumbers DropNumbersFrom(const nlohmann::json& json);
+
 // The scene with the mesh of one run and its time steps divided by `step_divisor`.
 Scene SceneOf(const DropStudy& study, const DropMesh& mesh, int step_divisor);
-
-// Runs all meshes one after the other. Throws Interrupted, and InputError if a mesh cannot be made
-// or a time step fails.
-std::vector<DropRun> RunDrop(const DropStudy& study, Progress* progress);
 
 }  // namespace lacuna
 

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <fstream>
 #include <sstream>
 
+#include "core/blas_kernels.h"
 #include "core/error.h"
+#include "core/json_number.h"
 #include "core/text_file.h"
 #include "record/json_hash.h"
+#include "registration/gaussian_sums.h"
 
 namespace lacuna {
 namespace {
@@ -18,15 +20,7 @@ std::string KeyOf(const SearchedParameters& p) {
                      p.poisson_ratio);
 }
 
-// JSON has no NaN: null stands for it.
-nlohmann::json Measured(double value) {
-  return std::isnan(value) ? nlohmann::json() : nlohmann::json(value);
-}
-double NumberOf(const nlohmann::json& value) {
-  return value.is_null() ? kNotMeasured : value.get<double>();
-}
-
-constexpr char kHash[] = "hash";
+constexpr char kHash[] = "hash", kInstructions[] = "instructions";
 
 // The hash of a line's content. Two runs write the same one, because the wall time is left out.
 std::string HashOf(const nlohmann::json& line) {
@@ -40,11 +34,11 @@ ObjectiveEvaluation EvaluationFrom(const nlohmann::json& json) {
   ObjectiveEvaluation evaluation;
   evaluation.usable = json.at("usable");
   evaluation.failure = json.at("failure");
-  evaluation.residual_sum = NumberOf(json.at("residual_sum_m"));
-  evaluation.residual_per_point = NumberOf(json.at("residual_per_point_m"));
-  evaluation.residual_rms = NumberOf(json.value("residual_rms_m", nlohmann::json()));
-  evaluation.scan_distance = NumberOf(json.at("scan_distance_m"));
-  evaluation.force = NumberOf(json.at("net_force_N"));
+  evaluation.residual_sum = NumberOr(json.at("residual_sum_m"));
+  evaluation.residual_per_point = NumberOr(json.at("residual_per_point_m"));
+  evaluation.residual_rms = NumberOr(json.value("residual_rms_m", nlohmann::json()));
+  evaluation.scan_distance = NumberOr(json.at("scan_distance_m"));
+  evaluation.force = NumberOr(json.at("net_force_N"));
   evaluation.nodes = json.at("nodes");
   evaluation.tets = json.at("tetrahedra");
   evaluation.surface_points = json.at("surface_points");
@@ -75,11 +69,11 @@ SearchedParameters SearchedParametersFrom(const nlohmann::json& json) {
 nlohmann::json ToJson(const ObjectiveEvaluation& evaluation) {
   nlohmann::json json{{"usable", evaluation.usable},
                       {"failure", evaluation.failure},
-                      {"residual_sum_m", Measured(evaluation.residual_sum)},
-                      {"residual_per_point_m", Measured(evaluation.residual_per_point)},
-                      {"residual_rms_m", Measured(evaluation.residual_rms)},
-                      {"scan_distance_m", Measured(evaluation.scan_distance)},
-                      {"net_force_N", Measured(evaluation.force)},
+                      {"residual_sum_m", NumberOrNull(evaluation.residual_sum)},
+                      {"residual_per_point_m", NumberOrNull(evaluation.residual_per_point)},
+                      {"residual_rms_m", NumberOrNull(evaluation.residual_rms)},
+                      {"scan_distance_m", NumberOrNull(evaluation.scan_distance)},
+                      {"net_force_N", NumberOrNull(evaluation.force)},
                       {"nodes", evaluation.nodes},
                       {"tetrahedra", evaluation.tets},
                       {"surface_points", evaluation.surface_points},
@@ -93,8 +87,24 @@ nlohmann::json ToJson(const ObjectiveEvaluation& evaluation) {
   return json;
 }
 
-EvaluationRecord::EvaluationRecord(const std::filesystem::path& file, const std::string& key)
-    : file_(file) {
+std::string InstructionsInUse() {
+  const char* registration = "baseline";
+  switch (BestKernels().set) {
+    case InstructionSet::kBaseline:
+      break;
+    case InstructionSet::kAvx2:
+      registration = "AVX2";
+      break;
+    case InstructionSet::kAvx512:
+      registration = "AVX-512";
+      break;
+  }
+  return fmt::format("{}, {}", registration, BlasKernelName());
+}
+
+EvaluationRecord::EvaluationRecord(const std::filesystem::path& file, const std::string& key,
+                                   const std::string& instructions)
+    : file_(file), instructions_(instructions) {
   std::string text;
   if (std::filesystem::exists(file)) {
     text = ReadWholeFile(file);
@@ -104,28 +114,39 @@ EvaluationRecord::EvaluationRecord(const std::filesystem::path& file, const std:
   }
   if (text.empty()) {
     AppendLine({{"objective", key}});
-    return;
+  } else {
+    Read(text, key);
   }
+}
+
+void EvaluationRecord::Read(const std::string& text, const std::string& key) {
   std::istringstream lines(text);
   int number = 0;
   bool is_hashed = false;  // files of earlier versions are not
   for (std::string line; std::getline(lines, line);) {
     ++number;
+    const auto refuse_damage = [&](const std::string& fault) {
+      throw InputError(
+          {file_.string(), number},
+          fmt::format("the line is damaged{}; remove this file, and what it held is computed again",
+                      fault));
+    };
     try {
       const nlohmann::json json = nlohmann::json::parse(line);
       if (number == 1) is_hashed = json.contains(kHash);
-      if (is_hashed && json.value(kHash, "") != HashOf(json))
-        throw InputError({file.string(), number},
-                         "the line is damaged; remove the file's folder to search anew");
+      if (is_hashed && json.value(kHash, "") != HashOf(json)) refuse_damage("");
       if (number == 1) {
         if (json.at("objective") == key) continue;
-        throw InputError({file.string(), 1},
-                         "was made with other settings; remove its folder to search anew");
+        throw InputError({file_.string(), number},
+                         "was made with other settings or by another version of Lacuna; remove "
+                         "this file to compute it anew, or choose another output folder");
       }
       known_[KeyOf(SearchedParametersFrom(json.at("parameters")))] =
           EvaluationFrom(json.at("evaluation"));
+      const std::string made_with = json.value(kInstructions, instructions_);
+      if (made_with != instructions_) other_instructions_.insert(made_with);
     } catch (const nlohmann::json::exception& problem) {
-      throw InputError({file.string(), number}, problem.what());
+      refuse_damage(fmt::format(" ({})", problem.what()));
     }
   }
 }
@@ -144,8 +165,16 @@ void EvaluationRecord::AppendLine(nlohmann::json line) {
 
 void EvaluationRecord::Append(const SearchedParameters& parameters,
                               const ObjectiveEvaluation& evaluation) {
-  AppendLine({{"parameters", ToJson(parameters)}, {"evaluation", ToJson(evaluation)}});
+  AppendLine({{"parameters", ToJson(parameters)},
+              {"evaluation", ToJson(evaluation)},
+              {kInstructions, instructions_}});
   known_[KeyOf(parameters)] = evaluation;
+}
+
+const ObjectiveEvaluation& EvaluationRecord::FindOrEvaluate(const ParameterObjective& problem,
+                                                            const SearchedParameters& parameters) {
+  if (Find(parameters) == nullptr) Append(parameters, EvaluateObjective(problem, parameters));
+  return *Find(parameters);
 }
 
 }  // namespace lacuna

@@ -185,11 +185,20 @@ ObjectiveEvaluation MeasureObjective(const ParameterObjective& problem,
   result.tets = motion.body->ElementCount();
   result.surface_points = static_cast<int>(motion.body->boundary.node.size());
   const FollowedFrame& last = motion.frames.back();
-  if (last.solver.usable) {
-    Measure(problem, motion, &result);
-  } else {
+  // A sum without the frames whose registration failed would be too small.
+  const auto unmeasured =
+      std::find_if(motion.frames.begin() + 1, motion.frames.end(),
+                   [](const FollowedFrame& frame) { return !frame.residual_problem.empty(); });
+  if (!last.solver.usable) {
     result.failure = fmt::format("frame {}: {}", problem.study.frames[motion.frames.size() - 1],
                                  last.solver.message);
+  } else if (unmeasured != motion.frames.end()) {
+    result.failure =
+        fmt::format("frame {}: registration: {}",
+                    problem.study.frames[static_cast<size_t>(unmeasured - motion.frames.begin())],
+                    unmeasured->residual_problem);
+  } else {
+    Measure(problem, motion, &result);
   }
   return result;
 }

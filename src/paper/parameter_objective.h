@@ -55,7 +55,9 @@ struct ObjectiveSlope {
 // The result of one evaluation of the objective.
 struct ObjectiveEvaluation {
   bool usable = false;
-  std::string failure;  // one line: TetGen failed, or a frame could not be followed
+  // One line: TetGen failed, a frame could not be followed, or its registration failed, so that its
+  // D was not measured.
+  std::string failure;
   // |D_anim|, m, over the vertices of the simulated surface, whose number depends on q and v.
   double residual_sum = kNotMeasured;
   // The mean length of the residual over the frames and a fixed sampling of the surface, m. With
@@ -83,7 +85,9 @@ FollowedMotion FollowForObjective(const ParameterObjective& problem,
 ObjectiveEvaluation MeasureObjective(const ParameterObjective& problem,
                                      const FollowedMotion& motion);
 
-// All three steps. Throws Interrupted; the evaluation reports every other failure.
+// All three steps. Throws Interrupted, and OutOfMemory (core/memory_limit.h) or std::bad_alloc, as
+// what does not fit into this machine's memory is no property of the parameters. The evaluation
+// reports every other failure.
 ObjectiveEvaluation EvaluateObjective(const ParameterObjective& problem,
                                       const SearchedParameters& parameters);
 

@@ -1,6 +1,7 @@
 #include "paper/parameter_search.h"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +28,20 @@ SearchVariable ReadVariable(const Config& search, const std::string& name,
   if (variable.lower > variable.start || variable.start > variable.upper)
     entry.Fail("start", "lies outside of lower and upper");
   return variable;
+}
+
+// Refuses the keys that the chosen method would ignore.
+void RefuseIgnored(const Config& search, SearchMethod method) {
+  const bool is_cobyla =
+      method == SearchMethod::kCobylaModern || method == SearchMethod::kCobylaPowell;
+  const bool is_process = method == SearchMethod::kGaussianProcess;
+  const auto refuse = [&search](const char* key, bool acts, const char* methods) {
+    if (search.Has(key) && !acts)
+      search.Fail(key, fmt::format("acts with method {} only; remove it", methods));
+  };
+  refuse("restarts", is_cobyla, "cobyla or cobyla_1994");
+  refuse("difference", method == SearchMethod::kCeres, "ceres");
+  refuse("seed", is_process, "gaussian_process");
 }
 
 SearchResult Run(const SearchProblem& problem, const SearchControl& control,
@@ -72,6 +87,13 @@ double Chosen(const Residuals& residuals, ObjectiveMeasure measure) {
   return residuals.residual_per_point;
 }
 
+// Whether the search's log and the record have the same value of an evaluation, or both none.
+bool Agree(const Evaluation& logged, const ObjectiveEvaluation& recorded,
+           ObjectiveMeasure measure) {
+  const double value = recorded.usable ? Chosen(recorded, measure) : kNotMeasured;
+  return logged.value ? *logged.value == value : !std::isfinite(value);
+}
+
 // The derivatives with respect to q, v, y and p; NaN where the evaluation has none.
 Eigen::VectorXd GradientOf(const ObjectiveEvaluation& evaluation, ObjectiveMeasure measure) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Constant(4, kNotMeasured);
@@ -115,6 +137,7 @@ ParameterSearchSettings ReadParameterSearch(const Config& search) {
   cobyla.final_radius = search.Number("final_radius", {0, 0.5, true, false}, 0.01);
   if (cobyla.final_radius > cobyla.initial_radius)
     search.Fail("final_radius", "is larger than initial_radius");
+  RefuseIgnored(search, settings.method);
   cobyla.restarts.max_restarts = search.Integer("restarts", 0, 1000, 20);
   settings.difference = search.Number("difference", {0, 0.5, true, false}, settings.difference);
   const auto is_free = [](const SearchVariable& variable) {
@@ -154,27 +177,29 @@ ParameterSearchResult RunParameterSearch(const ParameterObjective& problem,
                                          const std::filesystem::path& folder,
                                          const std::string& key, Progress* progress) {
   MakeFolder(folder);
-  EvaluationRecord record(folder / "evaluations.jsonl", key);
+  const std::filesystem::path record_file = folder / "evaluations.jsonl";
+  EvaluationRecord record(record_file, key);
+  for (const std::string& other : record.other_instructions()) {
+    LOG(WARNING) << record_file.string() << ": some evaluations were made with other vector "
+                 << "instructions (" << other << ") than this processor's (" << InstructionsInUse()
+                 << "); here their values, and the path of the search, would be slightly different";
+  }
   const SearchSpace space(settings.variables);
   progress->Begin("search", settings.evaluations);
   int64_t done = 0;
   ParameterObjective asked = problem;
   asked.slopes = settings.method == SearchMethod::kCeres;
   const auto evaluate = [&](const Eigen::VectorXd& x) {
-    const SearchedParameters parameters = ParametersOf(x);
-    const ObjectiveEvaluation* known = record.Find(parameters);
-    if (known == nullptr) {
-      record.Append(parameters, EvaluateObjective(asked, parameters));
-      known = record.Find(parameters);
-    }
+    const ObjectiveEvaluation& known = record.FindOrEvaluate(asked, ParametersOf(x));
     Evaluation outcome;
-    if (known->usable) outcome.value = ValueOf(*known, settings.measure);
-    outcome.failure = known->failure;
+    if (known.usable) outcome.value = ValueOf(known, settings.measure);
+    outcome.failure = known.failure;
     progress->Report(++done, outcome.value.value_or(kNotMeasured));
     return outcome;
   };
   const auto gradient = [&](const Eigen::VectorXd& x) {
-    return GradientOf(*record.Find(ParametersOf(x)), settings.measure);
+    // The outcome may have come from search.log, and the record may lack it.
+    return GradientOf(record.FindOrEvaluate(asked, ParametersOf(x)), settings.measure);
   };
   const SearchProblem search_problem = space.ProblemOf(evaluate, 0, gradient);
   SearchControl control;
@@ -190,18 +215,16 @@ ParameterSearchResult RunParameterSearch(const ParameterObjective& problem,
   result.failures = found.failures;
   for (const SearchStep& step : found.trace) {
     result.parameters.push_back(ParametersOf(space.FromUnit(step.x)));
-    const ObjectiveEvaluation* known = record.Find(result.parameters.back());
-    const auto agrees = [&] {
-      return step.outcome.value ? *step.outcome.value == ValueOf(*known, settings.measure)
-                                : !std::isfinite(ValueOf(*known, settings.measure));
-    };
-    if (known == nullptr || (known->usable && !agrees())) {
+    const ObjectiveEvaluation& known = record.FindOrEvaluate(asked, result.parameters.back());
+    if (!Agree(step.outcome, known, settings.measure)) {
       throw InputError(
-          SourcePosition{(folder / "evaluations.jsonl").string()},
-          "lacks an evaluation that search.log has, or has another value of it; remove "
-          "both to search anew");
+          SourcePosition{record_file.string()},
+          fmt::format("has another value of an evaluation than {}, because one of them "
+                      "was changed or comes from another processor or version of the "
+                      "program; remove both to search anew",
+                      control.log.string()));
     }
-    result.evaluations.push_back(*known);
+    result.evaluations.push_back(known);
   }
   progress->End(
       fmt::format("{} evaluations, {} failed", result.evaluations.size(), result.failures));

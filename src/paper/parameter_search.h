@@ -64,8 +64,11 @@ struct ParameterSearchResult {
 };
 
 // Keeps search.log and evaluations.jsonl in `folder`, which is made where necessary, and resumes
-// from them. `key` identifies the objective: InputError where the files belong to another one.
-// Throws Interrupted; all finished evaluations are kept.
+// from them. Without the log the search takes the same path again through the evaluations that are
+// kept; evaluations that the record lacks are made again. `key` identifies the objective, and
+// whether its slopes are kept: InputError where the files belong to another one or disagree. Warns
+// where evaluations were made with other vector instructions. Throws Interrupted; all finished
+// evaluations are kept.
 ParameterSearchResult RunParameterSearch(const ParameterObjective& problem,
                                          const ParameterSearchSettings& settings,
                                          const std::filesystem::path& folder,

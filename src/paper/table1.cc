@@ -21,7 +21,11 @@ namespace {
 
 constexpr double kTurnStep = 1e-3;    // rad, between one seed's mesh and the next
 constexpr double kStartSpread = 0.1;  // share of a variable's range, either way
-constexpr int kObjectiveVersion = 1;  // raised when the code changes so that |D_anim| does
+// Raised whenever a change of the code changes |D_anim| for the same recording: by the surfaces,
+// the registration, the mesh, FollowFrames or the measures. kStatesVersion, kReferenceVersion and
+// kMotionVersion in reconstruction/reconstruction.cc are those of the same code in a
+// reconstruction: a change that raises one of them raises this one too.
+constexpr int kObjectiveVersion = 2;
 constexpr double kFactors[] = {0.25, 0.5, 1, 2, 4};
 
 // The recording of a seed, and the scene's motion where one has to be scanned.
@@ -34,10 +38,7 @@ class Recordings {
     const std::filesystem::path folder = output_ / fmt::format("seed_{}", seed) / "recording";
     const std::string key = RecordingKey(study_, seed);
     if (IsKeptRecording(folder, key)) return folder;
-    if (!motion_) motion_ = SimulateScene(study_.scene, progress_);
-    if (!motion_->IsUsable()) {
-      throw InputError(fmt::format("scene {}: {}", study_.scene.name, motion_->message));
-    }
+    if (!motion_) motion_ = SimulateWholeScene(study_.scene, progress_);
     Scene scene = study_.scene;
     scene.scanner->options.seed += static_cast<uint64_t>(seed) - 1;
     KeepRecording(scene, *motion_, folder, key);
@@ -74,16 +75,17 @@ ParameterSearchSettings SettingsOf(const Table1Configuration& configuration, int
   return settings;
 }
 
-// All that decides the objective.
+// All that decides the objective, and what is kept of an evaluation.
 std::string KeyOf(const ReconstructionStudy& study, const ParameterSearchSettings& settings,
-                  const std::string& scene_key, int seed) {
+                  const std::string& recording_key) {
   nlohmann::json options = study.configuration;
   for (const char* key :
        {"output", "name", "row", "paper_drop", "search", "varies", "question", "against"})
     options.erase(key);
-  return HashBytes(fmt::format("{} {} {} {} {} {} {}", kObjectiveVersion, options.dump(), scene_key,
-                               seed, static_cast<int>(settings.measure),
-                               settings.registration_in_loop, settings.remesh_surface));
+  const bool has_slopes = settings.method == SearchMethod::kCeres;
+  return HashBytes(fmt::format("{} {} {} {} {} {} {}", kObjectiveVersion, options.dump(),
+                               recording_key, static_cast<int>(settings.measure),
+                               settings.registration_in_loop, settings.remesh_surface, has_slopes));
 }
 
 // An evaluation beside a search, made once. `key` is that of the search's objective, of which the
@@ -91,9 +93,7 @@ std::string KeyOf(const ReconstructionStudy& study, const ParameterSearchSetting
 ObjectiveEvaluation Kept(const ParameterObjective& problem, const SearchedParameters& parameters,
                          const std::filesystem::path& file, const std::string& key) {
   EvaluationRecord record(file, key + " " + file.filename().string());
-  if (record.Find(parameters) == nullptr)
-    record.Append(parameters, EvaluateObjective(problem, parameters));
-  return *record.Find(parameters);
+  return record.FindOrEvaluate(problem, parameters);
 }
 
 SearchedParameters TruthOf(const Table1Study& study, const Table1Configuration& configuration) {
@@ -198,7 +198,7 @@ void RunSeed(const Table1Study& study, const Table1Options& options, int seed,
                                settings.registration_in_loop,
                                kTurnStep * (seed - 1)};
     const std::filesystem::path place = folder / configuration.name;
-    const std::string key = KeyOf(reconstruction, settings, study.scene_key, seed);
+    const std::string key = KeyOf(reconstruction, settings, RecordingKey(study, seed));
     Table1Search search;
     search.found = RunParameterSearch(problem, settings, place, key, progress);
     search.worst = search.found.Worst(settings.measure);
@@ -290,7 +290,7 @@ Table1Study ReadTable1(const std::vector<Config>& files) {
 }
 
 std::string RecordingKey(const Table1Study& study, int seed) {
-  return fmt::format("{} {}", study.scene_key, seed);
+  return fmt::format("{} {} {}", kSceneVersion, study.scene_key, seed);
 }
 
 Table1Result RunTable1(const Table1Study& study, const Table1Options& options, Progress* progress) {

@@ -36,7 +36,8 @@ struct Table1Study {
   std::string scene_key;  // a hash of everything that determines its motion and scans
   double true_young_modulus = 0, true_poisson_ratio = 0;
 };
-// The key of the recording of a seed (experiment/kept_recording.h).
+// The key of the recording of a seed (experiment/kept_recording.h), with the version of the code
+// that makes it.
 std::string RecordingKey(const Table1Study& study, int seed);
 
 // Reads all .yaml files in `folder`. Throws InputError for a file that cannot be used, and when two

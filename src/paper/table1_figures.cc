@@ -6,7 +6,8 @@
 
 #include "analysis/measure.h"
 #include "core/atomic_file.h"
-#include "core/text_file.h"
+#include "core/error.h"
+#include "core/json_file.h"
 #include "experiment/kept_recording.h"
 #include "geometry/cut_open.h"
 #include "geometry/nearest.h"
@@ -55,19 +56,17 @@ std::vector<Optimum> ReadOptima(const Table1Study& table1, const std::filesystem
   if (!IsKeptRecording(results / "seed_1" / "recording", RecordingKey(table1, 1)))
     throw InputError(
         SourcePosition{file.string()},
-        "is of another scene, or its recording was changed; run `lacuna table1` again");
+        "belongs to another scene, was made by another version of Lacuna, or its recording was "
+        "changed; run `lacuna table1` with another `--output`, and name that folder as `--table1`");
   std::vector<Optimum> optima;
-  try {
-    const nlohmann::json table = nlohmann::json::parse(ReadWholeFile(file));
+  ReadJsonFile(file, [&optima](const nlohmann::json& table) {
     for (const nlohmann::json& search : table.at("searches")) {
       if (search.at("seed") != 1 || !search.contains("best")) continue;
       optima.push_back(
           {search.at("name"), SearchedParametersFrom(search.at("best").at("parameters")),
            search.at("best").at("evaluation").at("residual_per_point_m").get<double>()});
     }
-  } catch (const nlohmann::json::exception& problem) {
-    throw InputError(SourcePosition{file.string()}, problem.what());
-  }
+  });
   if (optima.empty())
     throw InputError(SourcePosition{file.string()}, "holds no search that found something");
   return optima;
@@ -256,6 +255,13 @@ FigureContent DrawOwnSurfaceMeshes(const Table1Study& table1, const Table1Scans&
 
 FigureContent DrawBend(const Table1Study& table1, const Table1Scans& scans,
                        const Table1FigureSettings& settings) {
+  for (const int frame : settings.bend_frames)
+    if (const std::string& failure = scans.tracked.failures[static_cast<size_t>(frame)];
+        !failure.empty())
+      throw InputError(fmt::format(
+          "bend: the registration of frame {} failed ({}), so that its displacement is not known; "
+          "choose other frames",
+          frame, failure));
   constexpr Eigen::Index kArrows = 90;
   constexpr double kArrowRadius = 0.007;  // share of the body's size
   FigureContent figure;

@@ -29,6 +29,7 @@ FigureContent DrawMeshes(const Table1Study& table1, const Table1Scans& scans,
 // The same where S_0's own triangles are kept and v does not act, so that q does.
 FigureContent DrawOwnSurfaceMeshes(const Table1Study& table1, const Table1Scans& scans,
                                    const Table1FigureSettings& settings);
+// Throws InputError where the registration of one of its frames failed.
 FigureContent DrawBend(const Table1Study& table1, const Table1Scans& scans,
                        const Table1FigureSettings& settings);
 // `results` holds table1.json. Throws InputError when it is missing or belongs to another

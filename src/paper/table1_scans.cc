@@ -14,10 +14,8 @@ std::filesystem::path RecordingOf(const Table1Study& table1, const std::filesyst
   const std::string key = RecordingKey(table1, 1);
   for (const auto& place : {results / "seed_1" / "recording", folder / "recording"})
     if (IsKeptRecording(place, key)) return place;
-  const SceneMotion motion = SimulateScene(table1.scene, progress);
-  if (!motion.IsUsable())
-    throw InputError(fmt::format("scene {}: {}", table1.scene.name, motion.message));
-  KeepRecording(table1.scene, motion, folder / "recording", key);
+  KeepRecording(table1.scene, SimulateWholeScene(table1.scene, progress), folder / "recording",
+                key);
   return folder / "recording";
 }
 

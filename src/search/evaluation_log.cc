@@ -14,6 +14,7 @@ namespace lacuna {
 namespace {
 
 constexpr int kHashDigits = 16;
+constexpr char kRemedy[] = "remove this file, and the search starts again";
 
 std::string Signed(const std::string& content) {
   return HashBytes(content).substr(0, kHashDigits) + " " + content + "\n";
@@ -79,14 +80,17 @@ EvaluationLog::EvaluationLog(const std::filesystem::path& file, const std::strin
     if (whole.size() <= kHashDigits + 2 ||
         Signed(whole.substr(kHashDigits + 1, whole.size() - kHashDigits - 2)) != whole) {
       if (end + 1 == text.size()) break;
-      throw InputError({file.string(), line}, "the line is damaged");
+      throw InputError({file.string(), line}, fmt::format("the line is damaged; {}", kRemedy));
     }
     if (line == 1) {
-      if (whole != header) throw InputError({file.string(), 1}, "is the log of another search");
+      if (whole != header)
+        throw InputError({file.string(), 1},
+                         fmt::format("is the log of another search; {}", kRemedy));
     } else {
       const std::string content = whole.substr(kHashDigits + 1, whole.size() - kHashDigits - 2);
       if (!ParseContent(content, variable_count, constraint_count, &steps_.emplace_back())) {
-        throw InputError({file.string(), line}, "is not an evaluation of this search");
+        throw InputError({file.string(), line},
+                         fmt::format("is not an evaluation of this search; {}", kRemedy));
       }
     }
     sound = end + 1;

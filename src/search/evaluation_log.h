@@ -21,7 +21,8 @@ namespace lacuna {
 class EvaluationLog {
  public:
   // Opens or creates the log of the search identified by `key`. Throws InputError with the file
-  // (and line) if it cannot be written, is damaged, or belongs to another search.
+  // (and line) if it cannot be written, and if it is damaged or belongs to another search: the
+  // message then says to remove it.
   EvaluationLog(const std::filesystem::path& file, const std::string& key, int variable_count,
                 int constraint_count);
 

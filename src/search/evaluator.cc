@@ -84,7 +84,8 @@ SearchStep Evaluator::Evaluate(Eigen::VectorXd x) {
     if (step.x != x) {
       throw InputError({control_.log.string(), index + 2},
                        "the search does not evaluate this point; the log was probably written by "
-                       "another version of the program");
+                       "another version of the program, or on a processor with other vector "
+                       "instructions; remove this file, and the search starts again");
     }
     return step;
   }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/json_number.h"
 #include "record/json_hash.h"
 
@@ -18,17 +18,12 @@ constexpr int kSchemaVersion = 1;
 
 // Reads a JSON file of a sweep. All errors name the file.
 template <typename Read>
-auto ReadJson(const std::filesystem::path& file, const Read& read) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, "cannot be opened");
-  try {
-    const auto json = nlohmann::ordered_json::parse(stream);
+auto ReadVersioned(const std::filesystem::path& file, const Read& read) {
+  return ReadJsonFile<nlohmann::ordered_json>(file, [&](const nlohmann::ordered_json& json) {
     if (json.at("schema_version") != kSchemaVersion)
       throw InputError({file.string()}, "was written by another version of Lacuna");
     return read(json);
-  } catch (const nlohmann::json::exception& problem) {
-    throw InputError({file.string()}, problem.what());
-  }
+  });
 }
 
 constexpr char kHash[] = "hash";
@@ -66,7 +61,7 @@ SweepIdentity LoadIdentity(const std::filesystem::path& folder) {
     throw InputError({folder.string()},
                      "is not a sweep (it has no sweep.json); `lacuna sweep plan` "
                      "creates one");
-  return ReadJson(file, [&](const auto& json) {
+  return ReadVersioned(file, [&](const auto& json) {
     const std::string command = json.at("command");
     for (const auto& [name, value] : SweepCommands())
       if (name == command) return SweepIdentity{json.at("name"), value};
@@ -91,7 +86,7 @@ std::vector<SweepCase> LoadCases(const std::filesystem::path& folder) {
     const std::filesystem::path file = item.path() / "case.json";
     if (item.path().filename().string().starts_with(".") || !std::filesystem::exists(file))
       continue;
-    cases.push_back(ReadJson(file, [&](const auto& json) {
+    cases.push_back(ReadVersioned(file, [&](const auto& json) {
       SweepCase entry{json.at("number"), item.path().filename(), json.at("experiment"), {}, {}};
       for (const auto& [field, value] : json.at("changes").items())
         entry.changes.push_back({field, value});
@@ -123,7 +118,7 @@ void SaveOutcome(const CaseOutcome& outcome, const std::filesystem::path& case_f
 std::optional<CaseOutcome> LoadOutcome(const std::filesystem::path& case_folder) {
   const std::filesystem::path file = case_folder / "outcome.json";
   if (!std::filesystem::exists(file)) return std::nullopt;
-  return ReadJson(file, [&](const auto& json) {
+  return ReadVersioned(file, [&](const auto& json) {
     // Outcomes of earlier versions have no hash.
     if (json.contains(kHash) && json.at(kHash) != HashOf(json))
       throw InputError({file.string()}, "is damaged; remove it, and the case is run again");

@@ -4,6 +4,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <map>
 
 #include "calibration/calibration_run.h"
 #include "core/error.h"
@@ -14,34 +15,6 @@
 
 namespace lacuna {
 namespace {
-
-CaseOutcome Reconstruct(const Config& experiment, Progress* progress) {
-  const RunRecord record = RunReconstruction(ReadReconstruction(experiment), progress);
-  CaseOutcome outcome;
-  outcome.done = record.IsUsable();
-  double distance = 0;
-  int unusable = 0;
-  for (const FrameRecord& frame : record.frames) {
-    distance += frame.surface_distance_mean / static_cast<double>(record.frames.size());
-    if (frame.solver.usable) continue;
-    ++unusable;
-    if (outcome.message.empty())
-      outcome.message = fmt::format("frame {}: {}", frame.frame, frame.solver.message);
-  }
-  for (const auto& [stage, status] : record.stages)
-    if (!status.usable && outcome.message.empty())
-      outcome.message = fmt::format("{}: {}", stage, status.message);
-  outcome.numbers = {
-      {"animation_residual_m", record.animation_residual},
-      {"residual_per_point_m", record.relative_animation_residual * record.object_size},
-      {"scan_distance_m", distance},
-      {"nodes", static_cast<double>(record.mesh.node_count)},
-      {"tetrahedra", static_cast<double>(record.mesh.tet_count)},
-      {"frames", static_cast<double>(record.frames.size())},
-      {"frames_unusable", unusable}};
-  for (const auto& [name, value] : record.measures) outcome.numbers.emplace_back(name, value);
-  return outcome;
-}
 
 CaseOutcome Fit(const Config& experiment, Progress* progress) {
   const CalibrationRecord record = RunCalibration(ReadPredictionStudy(experiment), progress);
@@ -164,6 +137,35 @@ CaseOutcome Table1(const SweepSettings& settings, const std::filesystem::path& f
 
 }  // namespace
 
+CaseOutcome OutcomeOf(const RunRecord& record) {
+  CaseOutcome outcome;
+  outcome.done = record.IsUsable();
+  int unusable = 0;
+  for (const FrameRecord& frame : record.frames) {
+    if (frame.solver.usable) continue;
+    ++unusable;
+    if (outcome.message.empty())
+      outcome.message = fmt::format("frame {}: {}", frame.frame, frame.solver.message);
+  }
+  for (const auto& [stage, status] : record.stages)
+    if (!status.usable && outcome.message.empty())
+      outcome.message = fmt::format("{}: {}", stage, status.message);
+  std::map<std::string, double> measures = record.measures;
+  const auto take = [&measures](const char* name) -> std::pair<std::string, double> {
+    const auto measure = measures.extract(name);
+    return {name, measure ? measure.mapped() : kNotMeasured};
+  };
+  outcome.numbers = {{"animation_residual_m", record.animation_residual},
+                     take("residual_per_point_m"),
+                     take("surface_distance_mean_m"),
+                     {"nodes", static_cast<double>(record.mesh.node_count)},
+                     {"tetrahedra", static_cast<double>(record.mesh.tet_count)},
+                     {"frames", static_cast<double>(record.frames.size())},
+                     {"frames_unusable", unusable}};
+  for (const auto& [name, value] : measures) outcome.numbers.emplace_back(name, value);
+  return outcome;
+}
+
 const std::vector<std::pair<std::string, SweepCommand>>& SweepCommands() {
   static const std::vector<std::pair<std::string, SweepCommand>> commands = {
       {"reconstruct", SweepCommand::kReconstruct},
@@ -205,7 +207,8 @@ CaseOutcome RunCommand(SweepCommand command, const SweepSettings& settings,
                        const std::filesystem::path& folder, Progress* progress) {
   if (command == SweepCommand::kTable1) return Table1(settings, folder, progress);
   const Config experiment = Config::Load(folder / "experiment.yaml");
-  if (command == SweepCommand::kReconstruct) return Reconstruct(experiment, progress);
+  if (command == SweepCommand::kReconstruct)
+    return OutcomeOf(RunReconstruction(ReadReconstruction(experiment), progress));
   if (command == SweepCommand::kFit) return Fit(experiment, progress);
   return RunCaseSearch(experiment, folder, progress);
 }

@@ -39,6 +39,10 @@ struct CaseOutcome {
   double seconds = 0;  // wall time of the process that finished the case
 };
 
+// The outcome of a reconstruction: its residuals, the size of its mesh, the frames that could not
+// be followed, and all measures of its record.
+CaseOutcome OutcomeOf(const RunRecord& record);
+
 // The files of a case: name within its folder → YAML.
 using CaseFiles = std::map<std::string, std::string>;
 
@@ -46,8 +50,9 @@ using CaseFiles = std::map<std::string, std::string>;
 // if the command would refuse them.
 void CheckCase(SweepCommand command, const CaseFiles& files, const std::filesystem::path& folder);
 
-// Runs or resumes the case in `folder`. Throws InputError for bad input and Interrupted; a
-// numerical failure gives an outcome that is not done.
+// Runs or resumes the case in `folder`. Throws InputError for bad input, Interrupted, and
+// OutOfMemory (core/memory_limit.h) or std::bad_alloc for a case that does not fit into the memory
+// of this machine; a numerical failure gives an outcome that is not done.
 CaseOutcome RunCommand(SweepCommand command, const SweepSettings& settings,
                        const std::filesystem::path& folder, Progress* progress);
 

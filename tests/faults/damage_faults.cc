@@ -67,15 +67,13 @@ void Damage(const fs::path& file, bool is_cut) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-// What the messages ask for: the earlier command makes its results again; a case without its mark,
-// or a search without its folder, begins anew.
+// What the messages ask for: the earlier command makes its results again, or the file is removed,
+// as the mark of a case or a file of a search.
 void Mend(const fs::path& file, Trial* trial) {
   if (trial->subject().preparation_mends)
     trial->Execute(trial->subject().preparation);
-  else if (file.filename() == trial->subject().mark)
-    fs::remove(file);
   else
-    fs::remove_all(file.parent_path());
+    fs::remove(file);
 }
 
 TrialOutcome TryDamage(const std::string& name, bool is_cut, bool is_rewritten, Trial* trial) {

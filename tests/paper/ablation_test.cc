@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -174,6 +175,24 @@ TEST(Ablation, AnUnknownRowToBeHeldAgainstIsRefused) {
   ablation.study.configurations[2].against = "revel";
   EXPECT_THAT([&] { CheckAblation(ablation.study); },
               ThrowsMessage<InputError>(HasSubstr("names no row")));
+}
+
+// NLopt's methods do not restart, so that a comparison with one that does would change two things.
+TEST(Ablation, RowsOfALibraryAreComparedWithASingleDescent) {
+  const Table1Study study = ReadTable1(fs::path(LACUNA_SOURCE_DIR) / "experiments/ablation");
+  int compared = 0;
+  for (const Table1Configuration& configuration : study.configurations) {
+    const SearchMethod method = configuration.search.method;
+    if (method != SearchMethod::kNloptCobyla && method != SearchMethod::kNloptBobyqa) continue;
+    const auto other = std::find_if(
+        study.configurations.begin(), study.configurations.end(),
+        [&](const Table1Configuration& row) { return row.name == configuration.against; });
+    ASSERT_NE(other, study.configurations.end()) << configuration.name;
+    EXPECT_EQ(other->search.method, SearchMethod::kCobylaModern) << configuration.name;
+    EXPECT_EQ(other->search.cobyla.restarts.max_restarts, 0) << configuration.name;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 2);
 }
 
 TEST(Ablation, TheFilesOfTheRepositoryAreRead) {

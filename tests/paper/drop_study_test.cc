@@ -109,8 +109,9 @@ TEST(DropStudyTest, ACoarseBodyBouncesAndItsEnergyDoesNotGrow) {
   study.meshes = {coarse};
   study.scene.frame_rate /= 2;  // coarser in time, too
   study.scene.frames /= 2;
+  const TemporaryFolder folder;
   SilentProgress progress;
-  const std::vector<DropRun> runs = RunDrop(study, &progress);
+  const std::vector<DropRun> runs = RunDrop(study, folder / "drop", &progress);
   ASSERT_EQ(runs.size(), 1u);
   const DropNumbers& numbers = runs[0].numbers;
   const Scene& scene = study.scene;
@@ -137,6 +138,41 @@ TEST(DropStudyTest, ACoarseBodyBouncesAndItsEnergyDoesNotGrow) {
   }
   EXPECT_LT(picture.panels[0].surfaces[1].vertex_values.maxCoeff(), 1e-6) << "nothing strained";
   EXPECT_TRUE(DropPicture(study, runs, 2).panels.empty());
+}
+
+TEST(DropStudyTest, ASimulationThatIsKeptIsNotRepeated) {
+  DropStudy study = ReadFigure1();
+  DropMesh coarse = study.meshes.front();
+  coarse.edge_length = 0.03;
+  coarse.settings.tets.max_volume = 2e-5;
+  study.meshes = {coarse};
+  study.scene.frames = 3;
+  const TemporaryFolder folder;
+  SilentProgress progress;
+  const std::vector<DropRun> made = RunDrop(study, folder / "drop", &progress);
+  // Were it simulated again, the motion would have one frame.
+  study.scene.frames = 1;
+  const std::vector<DropRun> kept = RunDrop(study, folder / "drop", &progress);
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0].motion.times, made[0].motion.times);
+  EXPECT_EQ(kept[0].motion.times.size(), 3u);
+  EXPECT_EQ(kept[0].motion.positions, made[0].motion.positions);
+  EXPECT_EQ(ToJson(kept[0].numbers), ToJson(made[0].numbers));
+  EXPECT_EQ(ToJson(kept[0].halved), ToJson(made[0].halved));
+  EXPECT_EQ(DropText(kept), DropText(made));
+  EXPECT_EQ(kept[0].motion.body->mesh.tets, made[0].motion.body->mesh.tets);
+  EXPECT_EQ(kept[0].motion.body->weight, made[0].motion.body->weight);
+
+  study.scene_configuration["density"] = 1;  // another scene
+  EXPECT_EQ(RunDrop(study, folder / "drop", &progress)[0].motion.times.size(), 1u);
+}
+
+TEST(DropStudyTest, NumbersThatWereNotMeasuredStayUnmeasured) {
+  DropNumbers numbers;
+  numbers.contact_time = 0.02;
+  const DropNumbers read = DropNumbersFrom(nlohmann::json::parse(ToJson(numbers).dump()));
+  EXPECT_EQ(read.contact_time, 0.02);
+  EXPECT_TRUE(std::isnan(read.touch_time));
 }
 
 TEST(DropStudyTest, ASceneWithoutFloorIsRefused) {

@@ -1,6 +1,7 @@
 // The paper's search on a reduced bend: every fifth frame of the demo's recording, few evaluations.
 #include "paper/parameter_search.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <regex>
 #include <string>
 
+#include "paper/evaluation_record.h"
 #include "paper/reduced_bend.h"
 #include "reconstruction/reconstruction_study.h"
 #include "support/silent_progress.h"
@@ -17,6 +19,9 @@ namespace lacuna {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 // A modulus that is 30 times too high, which forces of this size cannot make up for.
 constexpr char kSearch[] = R"(
@@ -199,6 +204,50 @@ TEST_F(ParameterSearchTest, TheGradientSearchLowersDAndAStoppedOneComesToTheSame
     CutAfter(folder / "stopped" / name, 4);
   }
   EXPECT_EQ(Search(settings, folder / "stopped").trace_hash, whole.trace_hash);
+
+  // The points that are read back from the log are not evaluated by the search itself, but their
+  // derivatives stand in the record alone. What it has lost is computed again.
+  const fs::path record = folder / "stopped/evaluations.jsonl";
+  fs::remove(record);
+  const ParameterSearchResult refilled = Search(settings, folder / "stopped");
+  EXPECT_EQ(refilled.trace_hash, whole.trace_hash);
+  for (size_t k = 0; k < whole.evaluations.size(); ++k)
+    EXPECT_EQ(refilled.evaluations[k].residual_sum, whole.evaluations[k].residual_sum) << k;
+  std::string lines = FileContent(record);
+  const size_t second = lines.find('\n') + 1;
+  lines.erase(second, lines.find('\n', second) + 1 - second);
+  std::ofstream(record) << lines;
+  EXPECT_EQ(Search(settings, folder / "stopped").trace_hash, whole.trace_hash);
+}
+
+// What the messages about a damaged log advise: nothing that was computed is lost.
+TEST_F(ParameterSearchTest, WithoutItsLogASearchTakesTheSamePathThroughTheRecord) {
+  const TemporaryFolder folder;
+  ParameterSearchSettings settings = Settings();
+  settings.evaluations = 4;
+  const ParameterSearchResult whole = Search(settings, folder / "search");
+  const std::string log = FileContent(folder / "search/search.log");
+  const std::string record = FileContent(folder / "search/evaluations.jsonl");
+  fs::remove(folder / "search/search.log");
+  EXPECT_EQ(Search(settings, folder / "search").trace_hash, whole.trace_hash);
+  EXPECT_EQ(FileContent(folder / "search/search.log"), log);
+  EXPECT_EQ(FileContent(folder / "search/evaluations.jsonl"), record);
+}
+
+// An evaluation that failed in the record and has a value in the log, as after an update.
+TEST_F(ParameterSearchTest, AFailureInTheRecordDoesNotPassForAValueInTheLog) {
+  const TemporaryFolder folder;
+  ParameterSearchSettings settings = Settings();
+  settings.evaluations = 1;
+  const ParameterSearchResult whole = Search(settings, folder / "search");
+  const fs::path file = folder / "search/evaluations.jsonl";
+  fs::remove(file);
+  ObjectiveEvaluation failed;
+  failed.failure = "frame 5: no convergence";
+  EvaluationRecord(file, "reduced").Append(whole.parameters.front(), failed);
+  EXPECT_THAT([&] { Search(settings, folder / "search"); },
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr("evaluations.jsonl"), HasSubstr("has another value"))));
 }
 
 TEST_F(ParameterSearchTest, TheMeasuresAreOfTheSameLengths) {
@@ -207,6 +256,26 @@ TEST_F(ParameterSearchTest, TheMeasuresAreOfTheSameLengths) {
   EXPECT_GT(evaluation.residual_rms, evaluation.residual_per_point);      // Jensen's inequality
   EXPECT_LT(evaluation.residual_rms, 3 * evaluation.residual_per_point);  // no heavy tail
   EXPECT_EQ(ValueOf(evaluation, ObjectiveMeasure::kRms), evaluation.residual_rms);
+}
+
+TEST(ParameterSearchSettingsTest, AKeyThatTheMethodIgnoresIsRefused) {
+  const auto read = [](const std::string& lines) {
+    return ReadParameterSearch(Config::Parse(std::string(kSearch) + lines, "s.yaml"));
+  };
+  EXPECT_EQ(read("").cobyla.restarts.max_restarts, 20);
+  EXPECT_EQ(read("restarts: 0\n").cobyla.restarts.max_restarts, 0);
+  EXPECT_EQ(read("restarts: 3\nmethod: cobyla_1994\n").cobyla.restarts.max_restarts, 3);
+  for (const char* method : {"gaussian_process", "nlopt_cobyla", "nlopt_bobyqa", "ceres"}) {
+    EXPECT_NO_THROW(read(std::string("method: ") + method + "\n")) << method;
+    EXPECT_THAT([&] { read(std::string("restarts: 3\nmethod: ") + method + "\n"); },
+                ThrowsMessage<InputError>(
+                    HasSubstr("restarts: acts with method cobyla or cobyla_1994 only")))
+        << method;
+  }
+  EXPECT_EQ(read("difference: 0.05\nmethod: ceres\n").difference, 0.05);
+  EXPECT_THROW(read("difference: 0.05\n"), InputError);
+  EXPECT_EQ(read("seed: 3\nmethod: gaussian_process\n").seed, 3u);
+  EXPECT_THROW(read("seed: 3\n"), InputError);
 }
 
 TEST(ParameterSearchSettingsTest, BoundsAreRefusedWhereTheyAreWrong) {

@@ -17,6 +17,7 @@ namespace lacuna {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -110,6 +111,13 @@ TEST_F(Table1FiguresTest, ArrowsShowTheRegisteredDisplacement) {
   EXPECT_GT(figure.numbers[1].at("simulated_max_m"), figure.numbers[0].at("simulated_max_m"));
 }
 
+TEST_F(Table1FiguresTest, AFrameWhoseRegistrationFailedHasNoDisplacement) {
+  Table1Scans scans = *scans_;
+  scans.tracked.failures.at(3) = "no overlap";
+  EXPECT_THAT([&] { DrawBend(*table1_, scans, *settings_); },
+              ThrowsMessage<InputError>(HasSubstr("registration of frame 3 failed (no overlap)")));
+}
+
 TEST_F(Table1FiguresTest, OptimaAreReadFromTheTableAndMeasureWhatItHas) {
   const TemporaryFolder folder;
   EXPECT_THAT([&] { DrawAlignment(*table1_, *scans_, *settings_, folder / "."); },
@@ -124,7 +132,8 @@ TEST_F(Table1FiguresTest, OptimaAreReadFromTheTableAndMeasureWhatItHas) {
   std::ofstream(folder / "table1.json")
       << nlohmann::json{{"searches", nlohmann::json::array({search})}};
   EXPECT_THAT([&] { DrawAlignment(*table1_, *scans_, *settings_, folder / "."); },
-              ThrowsMessage<InputError>(HasSubstr("another scene")));
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr("another scene"), HasSubstr("with another `--output`"))));
   fs::create_directories(folder / "seed_1/recording");
   std::ofstream(folder / "seed_1/recording/a.ply") << "ply\n";
   MarkRecording(folder / "seed_1/recording", RecordingKey(*table1_, 1));

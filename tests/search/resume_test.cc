@@ -137,10 +137,12 @@ TEST_F(Resume, RefusesADamagedLineAndTheLogOfAnotherSearch) {
   std::string damaged = sound;
   damaged[sound.size() / 2] ^= 1;
   std::ofstream(file_, std::ios::binary) << damaged;
-  EXPECT_THAT([&] { RunModern(); }, ThrowsMessage<InputError>(HasSubstr("damaged")));
+  EXPECT_THAT([&] { RunModern(); },
+              ThrowsMessage<InputError>(HasSubstr("damaged; remove this file")));
   std::ofstream(file_, std::ios::binary) << sound;
   control_.log_key = "another objective";
-  EXPECT_THAT([&] { RunModern(); }, ThrowsMessage<InputError>(HasSubstr("another search")));
+  EXPECT_THAT([&] { RunModern(); },
+              ThrowsMessage<InputError>(HasSubstr("another search; remove this file")));
   control_.log_key = "stepped";
   problem_.start[0] = 0.25;
   EXPECT_THAT([&] { RunModern(); }, ThrowsMessage<InputError>(HasSubstr("another search")));
