@@ -56,7 +56,7 @@ void AddedMass::AddParameterDerivative(const Kinematics& at, int parameter,
 }
 
 std::optional<double> AddedMass::Energy(const Kinematics& at) const {
-  if (at.time_step != 0) return std::nullopt;
+  if (at.has_inertia) return std::nullopt;
   const auto mass = Mass(at.body);
   double energy = 0;
   for (int i = 0; i < at.body.NodeCount(); ++i) {

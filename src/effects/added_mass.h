@@ -29,7 +29,7 @@ class AddedMass : public Effect {
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override;
 
-  // The potential energy of the weight, J; nothing in dynamics, where inertia has no potential.
+  // The potential energy of the weight, J; nothing in a step with inertia, which has no potential.
   std::optional<double> Energy(const Kinematics& at) const override;
 
   Eigen::VectorXd Parameters() const override { return parameters_; }

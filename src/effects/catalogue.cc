@@ -1,11 +1,13 @@
 #include "effects/catalogue.h"
 
+#include <fmt/format.h>
 #include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "effects/free_fall.h"
 #include "effects/vector_parameters.h"
 
 namespace lacuna {
@@ -77,14 +79,15 @@ const std::vector<CatalogueEntry>& Catalogue() {
 namespace {
 
 std::shared_ptr<const Effect> MakeOfKind(CatalogueEntry::Kind kind, const std::string& key,
-                                         const Config& config, const Effect* material) {
+                                         const Config& config, const Effect* material,
+                                         const std::optional<Eigen::Vector3d>& gravity) {
   std::vector<std::pair<std::string, const CatalogueEntry*>> choices;
   for (const CatalogueEntry& entry : Catalogue()) {
     if (entry.kind == kind) choices.emplace_back(entry.card->type, &entry);
   }
   const CatalogueEntry* entry = config.Choice(key, choices);
   if (entry->make_from_yaml != nullptr) return entry->make_from_yaml(config);
-  return entry->make(entry->read(*entry->card, config, material));
+  return entry->make(entry->read(*entry->card, config, material, gravity));
 }
 
 // The values of omitted parameters: the default of the card, else the material's parameter of the
@@ -114,6 +117,28 @@ Eigen::Vector3d ReadVector(const Config& config, const std::string& name,
   return vector;
 }
 
+// The setting `gravity` of an added mass in a model with the gravity `model`.
+Eigen::Vector3d ReadGravitySetting(const Config& config,
+                                   const std::optional<Eigen::Vector3d>& model) {
+  if (!model) {
+    if (!config.Has(kGravitySetting))
+      config.Fail(kGravitySetting,
+                  "must be given in a model without gravity: [0, 0, 0] for a mass without weight, "
+                  "or the acceleration of free fall if the reference shape was measured under it "
+                  "and without the mass");
+    return config.Vector(kGravitySetting, kAcceleration);
+  }
+  const Eigen::Vector3d given = config.Vector(kGravitySetting, kAcceleration, *model);
+  if (given.isZero(0)) return given;
+  if (!IsSameGravity(given, *model))
+    config.Fail(kGravitySetting,
+                fmt::format("the gravity of the model is [{:g}, {:g}, {:g}] m/s^2; leave out the "
+                            "key, or give [0, 0, 0] for a mass whose weight is one of the known "
+                            "forces",
+                            model->x(), model->y(), model->z()));
+  return *model;
+}
+
 }  // namespace
 
 const CatalogueEntry* FindEntry(const std::string& type) {
@@ -135,12 +160,21 @@ std::vector<std::string> LookAlikesOf(const EffectCard& card) {
   return types;
 }
 
-std::shared_ptr<const Effect> MakeEffect(const Config& config, const Effect* material) {
-  return MakeOfKind(CatalogueEntry::Kind::kEffect, "type", config, material);
+bool MayStandBeside(const EffectCard& one, const EffectCard& other) {
+  const auto excludes = [](const EffectCard& card, const std::string& type) {
+    return std::find(card.excludes.begin(), card.excludes.end(), type) != card.excludes.end();
+  };
+  if (one.type == other.type) return one.repeatable;
+  return !excludes(one, other.type) && !excludes(other, one.type);
+}
+
+std::shared_ptr<const Effect> MakeEffect(const Config& config, const Effect* material,
+                                         const std::optional<Eigen::Vector3d>& gravity) {
+  return MakeOfKind(CatalogueEntry::Kind::kEffect, "type", config, material, gravity);
 }
 
 std::shared_ptr<const Effect> MakeMaterial(const Config& config) {
-  return MakeOfKind(CatalogueEntry::Kind::kMaterial, "law", config, nullptr);
+  return MakeOfKind(CatalogueEntry::Kind::kMaterial, "law", config, nullptr, std::nullopt);
 }
 
 std::shared_ptr<const Effect> MakeEffect(const std::string& type,
@@ -161,13 +195,16 @@ std::shared_ptr<const Effect> MakeEffect(const std::string& type,
   return entry->make(values);
 }
 
-Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config,
-                               const Effect* material) {
+Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config, const Effect* material,
+                               const std::optional<Eigen::Vector3d>& gravity) {
   Eigen::VectorXd values = DefaultValues(card, material);
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     const ParameterCard& parameter = card.parameters[k];
     if (const std::string vector = VectorNameAt(card, k); !vector.empty()) {
-      values.segment<3>(k) = ReadVector(config, vector, parameter.dimension, values.segment<3>(k));
+      values.segment<3>(k) =
+          vector == kGravitySetting
+              ? ReadGravitySetting(config, gravity)
+              : ReadVector(config, vector, parameter.dimension, values.segment<3>(k));
       k += 2;
     } else if (std::isnan(values[k])) {
       values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds);

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,10 @@ struct CatalogueEntry {
   // Makes the effect from its parameter values.
   std::shared_ptr<const Effect> (*make)(const Eigen::VectorXd& parameters) = nullptr;
   // Reads the parameter values of a YAML mapping. A parameter that the mapping omits may be taken
-  // from `material`, the elasticity law of the body, which may be null.
-  Eigen::VectorXd (*read)(const EffectCard& card, const Config& config,
-                          const Effect* material) = nullptr;
+  // from `material`, the elasticity law of the body, which may be null, or from `gravity`, that of
+  // the model in m/s² (nothing: the model has none).
+  Eigen::VectorXd (*read)(const EffectCard& card, const Config& config, const Effect* material,
+                          const std::optional<Eigen::Vector3d>& gravity) = nullptr;
   // Replaces `make` and `read`, which are null then, for an effect that has more than its parameter
   // values and therefore a card of its own, of the same type as `card`.
   std::shared_ptr<const Effect> (*make_from_yaml)(const Config& config) = nullptr;
@@ -52,9 +54,16 @@ const CatalogueEntry* FindEntry(const std::string& type);
 // own card alone.
 std::vector<std::string> LookAlikesOf(const EffectCard& card);
 
-// The effect that `{type: mass_damping, alpha: 0.5 1/s}` describes. Throws InputError at the key
-// when the type is unknown or a parameter is missing, has the wrong unit or is out of bounds.
-std::shared_ptr<const Effect> MakeEffect(const Config& config, const Effect* material = nullptr);
+// Whether a model may contain effects of both cards: neither of them excludes the other, and two
+// effects have the same type only if it is repeatable.
+bool MayStandBeside(const EffectCard& one, const EffectCard& other);
+
+// The effect that `{type: mass_damping, alpha: 0.5 1/s}` describes, for a model with this material
+// and gravity (`read` above). Throws InputError at the key when the type is unknown or a parameter
+// is missing, has the wrong unit, is out of bounds or contradicts the model.
+std::shared_ptr<const Effect> MakeEffect(
+    const Config& config, const Effect* material = nullptr,
+    const std::optional<Eigen::Vector3d>& gravity = std::nullopt);
 
 // The elasticity law that `{law: neo_hookean, young_modulus: 0.1 MPa, poisson_ratio: 0.3}`
 // describes. Throws InputError as MakeEffect does.
@@ -75,9 +84,11 @@ std::shared_ptr<const Effect> MakeAs(const Eigen::VectorXd& parameters) {
 // The usual `read`. Each parameter of the card has a key of its own name; three parameters n_x, n_y
 // and n_z form one vector, `n: [0, 0, 1]`. A dimensionless vector is a direction: its length may be
 // anything but 0. An omitted parameter takes the default value of the card; without a default, the
-// value of the material's parameter of the same name. Throws InputError if there is neither.
-Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config,
-                               const Effect* material);
+// value of the material's parameter of the same name. Throws InputError if there is neither. The
+// setting `gravity` (free_fall.h) in a model with gravity is that of the model, also if it is
+// omitted, or 0; another value is refused.
+Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config, const Effect* material,
+                               const std::optional<Eigen::Vector3d>& gravity);
 
 }  // namespace lacuna
 

@@ -3,7 +3,8 @@
 //   ψ = w(X) ψ_nH(F; ΔE, ν), J/m³,
 // with the neo-Hookean energy ψ_nH (neo_hookean_energy.h), which is proportional to E. A
 // neo-Hookean body with this effect therefore has Young's modulus E + w ΔE if Poisson's ratios
-// agree; for other elasticity laws that holds at small strain.
+// agree; for other elasticity laws that holds at small strain. F refers to the rest shape, also in
+// a body that swells (free_strain.h).
 //
 // A `Weight` is a value type with these members:
 //   static const EffectCard& Card();       parameters: young_modulus_difference, …, poisson_ratio

@@ -12,8 +12,8 @@ const Effect& FreeStrain::Law(const Kinematics& at) {
 Kinematics FreeStrain::AsSeenByLaw(const Kinematics& at, const Body& body,
                                    const Eigen::VectorXd& position) {
   static const Eigen::VectorXd no_memory;
-  return {body,    position,     at.velocity, at.acceleration,
-          at.time, at.time_step, no_memory,   at.elasticity};
+  return {body,         position,  at.velocity,   at.acceleration, at.time,
+          at.time_step, no_memory, at.elasticity, at.has_inertia};
 }
 
 void FreeStrain::AddDifference(const Kinematics& at, const AddOfLaw& add,

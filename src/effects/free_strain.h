@@ -5,7 +5,9 @@
 //   ∂f/∂x = k K_el(elastic part) − K_el(x),   P = λ² P_el(F/λ) − P_el(F),
 // with the energy E_el, the force f_el, its derivative K_el = ∂f_el/∂x and the first
 // Piola–Kirchhoff stress P_el of the law, and with the free stretch λ of the material, the same in
-// all directions.
+// all directions. A model may contain one such effect only, because two of these differences do not
+// add up to that of the product of the stretches; their cards exclude each other
+// (EffectCard::excludes).
 #ifndef LACUNA_EFFECTS_FREE_STRAIN_H_
 #define LACUNA_EFFECTS_FREE_STRAIN_H_
 

@@ -90,26 +90,14 @@ class GravityEffect final : public CloneableEffect<GravityEffect> {
 };
 
 // `acceleration: [0, 0, -9.81 m/s^2]`
-Eigen::VectorXd ReadAcceleration(const EffectCard&, const Config& config, const Effect*) {
+Eigen::VectorXd ReadAcceleration(const EffectCard&, const Config& config, const Effect*,
+                                 const std::optional<Eigen::Vector3d>&) {
   return config.Vector("acceleration", kAcceleration);
 }
 
 }  // namespace
 
 const EffectCard& GravityCard() { return GravityEffect::TheCard(); }
-
-void AppendGravitySetting(EffectCard* card) {
-  AppendVector({.name = kGravitySetting,
-                .meaning = "acceleration of free fall, which must be that of the model's gravity "
-                           "(0, 0, 0 in a model without),",
-                .dimension = kAcceleration,
-                .bounds = kAnyValue,
-                .null_value = 0,
-                .plausible_min = -kStandardGravity,
-                .plausible_max = kStandardGravity,
-                .setting = true},
-               {0, 0, -kStandardGravity}, card);
-}
 
 std::shared_ptr<const Effect> MakeGravity(const Eigen::Vector3d& acceleration) {
   return std::make_shared<GravityEffect>(acceleration);

@@ -10,18 +10,10 @@
 #include <optional>
 #include <vector>
 
+#include "effects/free_fall.h"
 #include "fem/effect.h"
 
 namespace lacuna {
-
-inline constexpr double kStandardGravity = 9.80665;  // m/s², 3rd CGPM, 1901
-
-// The setting of other effects that must agree with the gravity of the model: `gravity`, m/s².
-inline constexpr char kGravitySetting[] = "gravity";
-
-// Appends the setting `gravity` (m/s²), the acceleration of free fall; by default the standard
-// value 9.80665 m/s² (3rd CGPM, 1901) along −z.
-void AppendGravitySetting(EffectCard* card);
 
 const EffectCard& GravityCard();
 

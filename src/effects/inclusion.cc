@@ -40,7 +40,8 @@ class BumpWeight {
         .family = EffectFamily::kStiffnessDistribution,
         .title = "A stiffer or softer inclusion",
         .equation =
-            "ψ = w(X) ψ_nH(F; ΔE, ν),  w = exp(−|X − c|²/(2 r²)),  ψ_nH the neo-Hookean energy",
+            "ψ = w(X) ψ_nH(F; ΔE, ν),  w = exp(−|X − c|²/(2 r²)),  ψ_nH the neo-Hookean energy. "
+            "F refers to the rest shape: the lump does not swell with the body (swelling)",
         .citation =
             "J. D. Eshelby, The Determination of the Elastic Field of an Ellipsoidal Inclusion, "
             "and Related Problems, Proc. R. Soc. A 241, 1957, 376–396; smooth lumps in "

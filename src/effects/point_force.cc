@@ -3,8 +3,9 @@
 //
 // The force is distributed over the boundary nodes around the place c at rest as
 // exp(−|X − c|²/(2 r²)) times the area around each node. It keeps its direction in space. In a step
-// from t − h to t it acts with the share of the step that lies between `start` and `stop`, so that
-// its impulse is F (stop − start) for any time steps; in statics it acts if start ≤ t < stop.
+// with inertia from t − h to t it acts with the share of the step that lies between `start` and
+// `stop`, so that its impulse is F (stop − start) for any time steps. An equilibrium at t, also one
+// at the end of a quasi-static step, has the whole force if start ≤ t < stop.
 #include <glog/logging.h>
 
 #include <algorithm>
@@ -125,10 +126,15 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
     });
   }
 
-  // The share of the step in which the force acts.
+  // The share of the force that acts: of a step with inertia, the part between start and stop.
   double PresentShare(const Kinematics& at) const {
     const double start = parameters_[kStart], stop = parameters_[kStop];
-    if (at.time_step == 0) return start <= at.time && at.time < stop ? 1 : 0;
+    if (!at.has_inertia) {
+      // The end of a step may lie before `start` or `stop` by rounding.
+      constexpr double kRounding = 1e-6;
+      const double now = at.time + kRounding * at.time_step;
+      return start <= now && now < stop ? 1 : 0;
+    }
     const double from = std::max(start, at.time - at.time_step);
     return std::clamp((std::min(stop, at.time) - from) / at.time_step, 0.0, 1.0);
   }
@@ -142,9 +148,9 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
   RestQuantity<Eigen::VectorXd> shares_;
 };
 
-Eigen::VectorXd ReadPointForce(const EffectCard& card, const Config& config,
-                               const Effect* material) {
-  const Eigen::VectorXd values = ReadParameters(card, config, material);
+Eigen::VectorXd ReadPointForce(const EffectCard& card, const Config& config, const Effect* material,
+                               const std::optional<Eigen::Vector3d>& gravity) {
+  const Eigen::VectorXd values = ReadParameters(card, config, material, gravity);
   if (values[PointForceEffect::kStop] <= values[PointForceEffect::kStart]) {
     config.Fail("stop", "expected a time after start");
   }

@@ -98,6 +98,7 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
       state_at_end->segment<3>(3 * node) += stretch - Held(stretch, parameters[kSlipDistance]);
     });
   }
+  double StateScale() const override { return SlipDistance(); }
 
  private:
   static EffectCard MakeCard() {

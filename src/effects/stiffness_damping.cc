@@ -32,8 +32,9 @@ Eigen::Matrix3d ViscousStress(const LameConstants& viscosity, const Eigen::Matri
 // as in a Kelvin–Voigt solid: rigid motions cause no force, the power −Ė : βC : Ė is never
 // positive, and for small strains and rotations the force is −β K v for any elasticity law.
 //
-// The moduli belong to the effect (by default they are copies of the material's): when a fit
-// changes Young's modulus, the viscosity βC stays the same, and ∂f/∂(parameter) is complete.
+// The moduli are parameters of the effect, so that ∂f/∂(parameter) is complete. As long as they
+// equal the material's, which they do by default, a fit changes both together, and the viscosity βC
+// follows Young's modulus; moduli with other values stay as they are.
 class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffect> {
  public:
   static const EffectCard& TheCard() {

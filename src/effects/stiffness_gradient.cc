@@ -33,7 +33,9 @@ class LinearWeight {
         .family = EffectFamily::kStiffnessDistribution,
         .title = "Stiffness that changes along the body",
         .equation =
-            "ψ = w(X) ψ_nH(F; ΔE, ν),  w = a·(X − o)/L with |a| = 1,  ψ_nH the neo-Hookean energy",
+            "ψ = w(X) ψ_nH(F; ΔE, ν),  w = a·(X − o)/L with |a| = 1,  ψ_nH the neo-Hookean "
+            "energy. F refers to the rest shape: what is added does not swell with the body "
+            "(swelling)",
         .citation =
             "S. Suresh, A. Mortensen, Fundamentals of Functionally Graded Materials, IOM "
             "Communications 1998; neo-Hookean energy: B. Smith, F. de Goes, T. Kim, ACM TOG 37(2), "

@@ -12,7 +12,9 @@
 // derivative K_el = ∂f_el/∂x,
 //   f = s² f_el(x/s) − f_el(x),   E = s³ E_el(x/s) − E_el(x),   ∂f/∂x = s K_el(x/s) − K_el(x),
 //   ∂f/∂ε = 2 s f_el(x/s) − K_el(x/s) x.
-// Stresses of other effects (fibres, damping) refer to F, not to F_e.
+// Stresses of other effects refer to F, not to F_e: an inclusion, a gradient of stiffness, fibres
+// or a branch adds a material that does not swell, and a swollen body that contains it is under
+// stress even if it is free.
 #include <glog/logging.h>
 
 #include "effects/catalogue.h"
@@ -65,15 +67,19 @@ class SwellingEffect final : public CloneableEffect<SwellingEffect, FreeStrain> 
     return {.type = "swelling",
             .family = EffectFamily::kVolumeStress,
             .title = "Swelling, shrinking or thermal expansion",
-            .equation = "ψ = (1 + ε)³ ψ_el(F/(1 + ε)) − ψ_el(F),  ψ_el the body's elasticity law",
+            .equation =
+                "ψ = (1 + ε)³ ψ_el(F/(1 + ε)) − ψ_el(F),  ψ_el the body's elasticity law. "
+                "What other effects add to the material, such as an inclusion or fibres, "
+                "refers to F: it does not swell",
             .citation =
                 "J. M. C. Duhamel, Second mémoire sur les phénomènes thermo-mécaniques, J. de "
                 "l'École Polytechnique 15, 1837, 1–57; the multiplicative split: E. K. Rodriguez, "
                 "A. Hoger, A. D. McCulloch, Stress-Dependent Finite Growth in Soft Elastic "
                 "Tissues, Journal of Biomechanics 27, 1994, 455–467",
             .parameters = {{.name = "strain",
-                            .meaning = "linear strain that the body would have if it were free, "
-                                       "ε; negative where it shrinks",
+                            .meaning = "linear strain that the body would have if it were free "
+                                       "and of the elasticity law alone, ε; negative where it "
+                                       "shrinks",
                             .dimension = kDimensionless,
                             .bounds = {-1, 10, true, false},
                             .null_value = 0,
@@ -98,13 +104,14 @@ class SwellingEffect final : public CloneableEffect<SwellingEffect, FreeStrain> 
   double strain_ = 0;  // ε
 };
 
-Eigen::VectorXd ReadSwelling(const EffectCard& card, const Config& config, const Effect* material) {
+Eigen::VectorXd ReadSwelling(const EffectCard& card, const Config& config, const Effect* material,
+                             const std::optional<Eigen::Vector3d>& gravity) {
   for (const char* modulus : {"young_modulus", "poisson_ratio"})
     if (config.Has(modulus))
       config.Fail(modulus,
                   "is no longer needed: the strain is independent of the moduli, and those of the "
                   "material apply; leave it out");
-  return ReadParameters(card, config, material);
+  return ReadParameters(card, config, material, gravity);
 }
 
 }  // namespace

@@ -7,7 +7,10 @@
 // With the quadrature of the body (weights w, shape gradients ∂N/∂X) the first term is the energy
 // that the law stores on a body with the weights s³ w and the gradients ∂N/∂X / s: the swollen
 // body, whose elements need not fit together. Force, energy and tangent therefore are those of the
-// law on the swollen body minus those on the body. The derivative is
+// law on the swollen body minus those on the body. Two free strains in one model would each add
+// such a difference, which is not that of the product of their stretches (two of 10 % would enlarge
+// a body of linear elasticity by 18.3 %, not 21 %); the card therefore excludes it. The derivative
+// is
 //   ∂f/∂ε₀ = 2 f′ − (∂f′/∂x) x,
 // where f′ is the force of the law on the swollen body with its weights multiplied by g/s.
 #include <fmt/format.h>
@@ -35,7 +38,9 @@ const EffectCard& TheCard() {
       .equation =
           "ψ = s³ ψ_el(F/s) − ψ_el(F),  s = 1 + ε₀ g(X, Y, Z),  ψ_el the body's elasticity law, "
           "g an expression of the place at rest in m, e.g. {type: swelling_field, strain: 0.1 %, "
-          "field: \"1 + Z/0.02\"}; docs/expression.md describes the language",
+          "field: \"1 + Z/0.02\"}; docs/expression.md describes the language. What other effects "
+          "add to the material, such as an inclusion or fibres, refers to F: it does not swell. A "
+          "model has one free strain; several are one field, the product of their stretches less 1",
       .citation =
           "J. M. C. Duhamel, Second mémoire sur les phénomènes thermo-mécaniques, J. de l'École "
           "Polytechnique 15, 1837, 1–57; E. K. Rodriguez, A. Hoger, A. D. McCulloch, "
@@ -58,7 +63,7 @@ const EffectCard& TheCard() {
           "gravity changes sign. Wait until temperature and moisture are the same everywhere: the "
           "body becomes straight",
       .look_alikes = {"swelling", "gravity"},
-      .repeatable = true,
+      .excludes = {"swelling"},
       .conserves_momentum = true,
       .conserves_angular_momentum = true};
   return card;

@@ -67,15 +67,24 @@ struct Kinematics {
   const Body& body;
   const Eigen::VectorXd& position;      // m
   const Eigen::VectorXd& velocity;      // m/s
-  const Eigen::VectorXd& acceleration;  // m/s²; 0 in statics
+  const Eigen::VectorXd& acceleration;  // m/s²; 0 without inertia
   double time = 0;                      // s
-  double time_step = 0;                 // s; 0 in statics
+  double time_step = 0;  // s; 0: an equilibrium that does not follow an earlier state
   // Internal variables of this effect at the start of the step, StateSize() entries, e.g. viscous
   // strains. Empty for an effect without memory.
   const Eigen::VectorXd& state;
   // The elasticity law of the body at its present parameters, for an effect that is defined
   // relative to that law. Null where no model is at hand.
   const Effect* elasticity = nullptr;
+  // Whether the step has inertia. Otherwise the body is in equilibrium at `time`; the length of a
+  // quasi-static step then matters for rates and for internal variables only.
+  bool has_inertia = false;
+
+  // The same with other internal variables, to which the result refers.
+  Kinematics WithState(const Eigen::VectorXd& other) const {
+    return {body,      position, velocity,   acceleration, time,
+            time_step, other,    elasticity, has_inertia};
+  }
 };
 
 // Factors of the derivatives of the force in a tangent. Their units make all three terms N/m.
@@ -144,6 +153,10 @@ class Effect {
   virtual void InitialState(const Body&, Eigen::VectorXd* /*state*/) const {}
   virtual void AdvanceState(const Kinematics&, const Eigen::VectorXd& /*parameters*/,
                             Eigen::VectorXd* /*state_at_end*/) const {}
+  // A change of z that makes a difference to the force, > 0, in the unit of z: 1 for strains, the
+  // distance at which a support slides for a slip in m. Derivatives by z are differences over a
+  // small part of it.
+  virtual double StateScale() const { return 1; }
 };
 
 }  // namespace lacuna

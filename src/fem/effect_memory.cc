@@ -6,8 +6,10 @@
 
 namespace lacuna {
 
-EffectMemory::EffectMemory(const Model& model)
-    : model_(model), state_(RestHistory(model).effect_state) {}
+EffectMemory::EffectMemory(const Model& model, TimeScheme scheme)
+    : model_(model),
+      has_inertia_(scheme != TimeScheme::kQuasiStatic),
+      state_(RestHistory(model).effect_state) {}
 
 bool EffectMemory::IsEmpty() const {
   return std::all_of(state_.begin(), state_.end(),
@@ -21,9 +23,10 @@ const std::vector<Eigen::VectorXd>& EffectMemory::Advance(const Eigen::VectorXd&
   for (size_t j = 0; j < state_.size(); ++j) {
     if (state_[j].size() == 0) continue;
     const Eigen::VectorXd before = state_[j];
-    model_.effects[j]->AdvanceState({*model_.body, position, velocity, no_acceleration, time,
-                                     time_step, before, ElasticityOf(model_)},
-                                    model_.effects[j]->Parameters(), &state_[j]);
+    model_.effects[j]->AdvanceState(
+        {*model_.body, position, velocity, no_acceleration, time, time_step, before,
+         ElasticityOf(model_), has_inertia_ && time_step > 0},
+        model_.effects[j]->Parameters(), &state_[j]);
   }
   return state_;
 }

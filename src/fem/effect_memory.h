@@ -9,13 +9,15 @@
 #include <vector>
 
 #include "fem/model.h"
+#include "fem/time_scheme.h"
 
 namespace lacuna {
 
 // Keeps a reference to the model.
 class EffectMemory {
  public:
-  explicit EffectMemory(const Model& model);
+  // `scheme`: that of the prediction.
+  EffectMemory(const Model& model, TimeScheme scheme);
 
   // Whether any effect has internal variables.
   bool IsEmpty() const;
@@ -28,6 +30,7 @@ class EffectMemory {
 
  private:
   const Model& model_;
+  bool has_inertia_;  // of the steps of the motion
   std::vector<Eigen::VectorXd> state_;
 };
 

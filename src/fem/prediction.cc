@@ -132,6 +132,8 @@ PredictionSummary Predict(
 
   MotionHistory before = history;
   const StepSummary equilibrium = Hold(options, &stepper, &history);
+  if (equilibrium.status == StepSummary::Status::kMissingMass)
+    return Stopped(summary, equilibrium.message);
   if (!equilibrium.IsUsable())
     return Stopped(summary, (model.grips.empty()
                                  ? "no equilibrium to start from, and no grip holds the object: "

@@ -30,9 +30,10 @@ Eigen::MatrixXd Massed(const Body& body, const Eigen::MatrixXd& columns) {
 // Tangents of the effects at states of a trajectory, and solutions with them.
 class TangentsAlong {
  public:
-  TangentsAlong(const Model& model, double time_step)
+  TangentsAlong(const Model& model, const ReducedResponseOptions& options)
       : model_(model),
-        time_step_(time_step),
+        time_step_(options.time_step),
+        has_inertia_(options.scheme != TimeScheme::kQuasiStatic),
         held_(HeldAxes(model)),
         order_(NestedDissection(*model.body->pattern, held_.whole_nodes())),
         factor_(*model.body->pattern, order_),
@@ -69,7 +70,7 @@ class TangentsAlong {
     for (size_t j = 0; j < model_.effects.size(); ++j)
       model_.effects[j]->AddTangents(
           {*model_.body, state.position, state.velocity, no_acceleration, state.time, time_step_,
-           state.effect_state[j], ElasticityOf(model_)},
+           state.effect_state[j], ElasticityOf(model_), has_inertia_},
           negative, convexify, &matrix_);
   }
 
@@ -87,6 +88,7 @@ class TangentsAlong {
 
   const Model& model_;
   double time_step_;
+  bool has_inertia_;
   HeldComponents held_;
   EliminationOrder order_;
   CholmodFactor factor_;
@@ -118,7 +120,7 @@ ReducedResponse::ReducedResponse(const Model& model, const std::vector<Trajector
     : options_(options) {
   CHECK(!states.empty());
   const Body& body = *model.body;
-  TangentsAlong along(model, options.time_step);
+  TangentsAlong along(model, options);
 
   std::vector<Eigen::MatrixXd> answers;
   const size_t wanted = std::min<size_t>(options.basis_states, states.size());

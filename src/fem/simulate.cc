@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "fem/held_components.h"
 #include "fem/inverted_element.h"
+#include "fem/missing_mass.h"
 #include "fem/newton.h"
 
 namespace lacuna {
@@ -75,7 +76,8 @@ struct Stepper::Implementation {
         options(the_options),
         held(CheckedHeldComponents(model)),
         solver(model.body->pattern, held, options.linear),
-        tangent(model.body->pattern) {}
+        tangent(model.body->pattern),
+        missing_mass(MissingMass(model)) {}
 
   NewtonSummary Solve(const StepEquation& equation, const Eigen::VectorXd& force,
                       const Eigen::VectorXd& target, double tolerance, Eigen::VectorXd* position) {
@@ -132,9 +134,13 @@ struct Stepper::Implementation {
     const Eigen::VectorXd force =
         external_force.size() > 0 ? external_force : Eigen::VectorXd::Zero(size);
     const StepEquation equation(model, *history, scheme, time_step);
-    const Eigen::VectorXd target = Gripped(model, equation.end_time(), history->position);
-
     StepSummary result;
+    if (!missing_mass.empty()) {
+      result.status = StepSummary::Status::kMissingMass;
+      result.message = missing_mass;
+      return result;
+    }
+    const Eigen::VectorXd target = Gripped(model, equation.end_time(), history->position);
     if (!target.allFinite() || !force.allFinite()) {
       result.status = StepSummary::Status::kNoConvergence;
       result.message = fmt::format(
@@ -184,6 +190,7 @@ struct Stepper::Implementation {
   const HeldComponents held;
   LinearSolver solver;
   BlockMatrix tangent;
+  const std::string missing_mass;  // why no step can be taken; empty otherwise
 };
 
 Stepper::Stepper(const Model& model, const StepOptions& options)

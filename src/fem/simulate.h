@@ -30,7 +30,14 @@ struct StepOptions {
 };
 
 struct StepSummary {
-  enum class Status { kNotRun, kConverged, kNoConvergence, kInvertedElement, kLinearSolverFailed };
+  enum class Status {
+    kNotRun,
+    kConverged,
+    kNoConvergence,
+    kInvertedElement,
+    kLinearSolverFailed,
+    kMissingMass  // effects remove more mass than a part of the body has (missing_mass.h)
+  };
   Status status = Status::kNotRun;
   std::string message;  // why the step failed, with time and node or element
   int iterations = 0;   // NewtonSummary::iterations

@@ -64,7 +64,8 @@ Kinematics StepEquation::At(const EndOfStep& end, size_t effect) const {
           end_time_,
           time_step_,
           history_.effect_state[effect],
-          ElasticityOf(model_)};
+          ElasticityOf(model_),
+          inertia_};
 }
 
 Eigen::VectorXd StepEquation::Velocity(const Eigen::VectorXd& position) const {

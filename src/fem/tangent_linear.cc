@@ -16,9 +16,10 @@
 namespace lacuna {
 namespace {
 
-// Internal variables are differentiated by differences of this size, in strains. Rounding errors
-// are then 1e-10 of the value and truncation errors 1e-6 of its second derivative; most forces are
-// linear in the internal variables.
+// Internal variables are differentiated by differences of this share of their scale
+// (Effect::StateScale), together with strains of this size. For strains, rounding errors are then
+// 1e-10 of the value and truncation errors 1e-6 of its second derivative; most forces are linear in
+// the internal variables.
 constexpr double kDifference = 1e-6;
 
 Eigen::MatrixXd ScaledRows(const Eigen::VectorXd& node_weight, Eigen::MatrixXd columns) {
@@ -147,8 +148,9 @@ struct TangentLinear::Implementation {
 
   Kinematics AtOutside(const StepEquation& equation, const StepEquation::EndOfStep& end,
                        Eigen::Index k) const {
-    return {*model.body,         end.position,         end.velocity,     end.acceleration,
-            equation.end_time(), equation.time_step(), outside[k].value, ElasticityOf(model)};
+    return {*model.body,      end.position,        end.velocity,
+            end.acceleration, equation.end_time(), equation.time_step(),
+            outside[k].value, ElasticityOf(model), equation.has_inertia()};
   }
 
   // Σ ∂f/∂z ζ over the effects with memory.
@@ -160,20 +162,16 @@ struct TangentLinear::Implementation {
       Eigen::VectorXd now = Eigen::VectorXd::Zero(end.position.size());
       inside[j].effect->AddForce(at, &now);
       ParallelFor(Count(), 1, [&](int64_t k) {
-        const double largest = change.col(k).lpNorm<Eigen::Infinity>();
+        const double largest =
+            change.col(k).lpNorm<Eigen::Infinity>() / inside[j].effect->StateScale();
         if (largest == 0) return;
         const double h = kDifference / largest;
         const Eigen::VectorXd more = at.state + h * change.col(k);
         Eigen::VectorXd plus = Eigen::VectorXd::Zero(end.position.size());
-        inside[j].effect->AddForce(WithState(at, more), &plus);
+        inside[j].effect->AddForce(at.WithState(more), &plus);
         right.col(k) += (plus - now) / h;
       });
     }
-  }
-
-  static Kinematics WithState(const Kinematics& at, const Eigen::VectorXd& state) {
-    return {at.body, at.position,  at.velocity, at.acceleration,
-            at.time, at.time_step, state,       at.elasticity};
   }
 
   // dz/dp at the end of the step, from the sensitivities there.
@@ -190,7 +188,7 @@ struct TangentLinear::Implementation {
       if (outside[k].value.size() == 0) return;
       const Eigen::VectorXd before = outside[k].value;
       const Kinematics at = AtOutside(equation, end, k);
-      outside[k].effect->AdvanceState(WithState(at, before), outside[k].effect->Parameters(),
+      outside[k].effect->AdvanceState(at.WithState(before), outside[k].effect->Parameters(),
                                       &outside[k].value);
     });
   }
@@ -200,9 +198,11 @@ struct TangentLinear::Implementation {
                      const Eigen::VectorXd& now, Eigen::Index k, Memory* memory) const {
     const bool own = perturbations[k].effect == memory->effect;
     const double own_value = own ? parameters[perturbations[k].parameter] : 1;
-    const double largest = std::max({position.col(k).lpNorm<Eigen::Infinity>() / element_size,
-                                     memory->sensitivity.col(k).lpNorm<Eigen::Infinity>(),
-                                     own ? 1 / std::max(std::abs(own_value), 1e-300) : 0.0});
+    const double of_state =
+        memory->sensitivity.col(k).lpNorm<Eigen::Infinity>() / memory->effect->StateScale();
+    const double largest =
+        std::max({position.col(k).lpNorm<Eigen::Infinity>() / element_size, of_state,
+                  own ? 1 / std::max(std::abs(own_value), 1e-300) : 0.0});
     if (largest == 0) return;
     const double h = kDifference / largest;
     const Eigen::VectorXd x = at.position + h * position.col(k);
@@ -211,7 +211,8 @@ struct TangentLinear::Implementation {
     Eigen::VectorXd after = z, shifted = parameters;
     if (own) shifted[perturbations[k].parameter] += h;
     memory->effect->AdvanceState(
-        {at.body, x, v, at.acceleration, at.time, at.time_step, z, at.elasticity}, shifted, &after);
+        {at.body, x, v, at.acceleration, at.time, at.time_step, z, at.elasticity, at.has_inertia},
+        shifted, &after);
     memory->sensitivity.col(k) = (after - now) / h;
   }
 

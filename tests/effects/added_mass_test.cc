@@ -1,8 +1,12 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "effects/catalogue.h"
@@ -15,6 +19,13 @@ namespace {
 
 constexpr double kGravity = 9.80665;  // m/s²
 
+// The effect in a model whose gravity is along −z, unless the values contain another one.
+std::shared_ptr<const Effect> MakeFalling(const std::string& type,
+                                          std::map<std::string, double> values) {
+  values.insert({{"gravity_x", 0}, {"gravity_y", 0}, {"gravity_z", -kGravity}});
+  return MakeEffect(type, values);
+}
+
 // ∂f/∂(first parameter) on the body at rest under a uniform acceleration, 3 × n.
 Eigen::Matrix3Xd ForcePerUnit(const Effect& effect, const Body& body,
                               const Eigen::Vector3d& acceleration) {
@@ -26,12 +37,12 @@ Eigen::Matrix3Xd ForcePerUnit(const Effect& effect, const Body& body,
 }
 
 TEST(AttachedMass, PassesTheEffectChecks) {
-  CheckEffect(MakeEffect("attached_mass", {{"mass", 0.02},
-                                           {"centre_x", 0.02},
-                                           {"centre_y", -0.02},
-                                           {"centre_z", 0.03},
-                                           {"radius", 0.015},
-                                           {"gravity_x", 1}})
+  CheckEffect(MakeFalling("attached_mass", {{"mass", 0.02},
+                                            {"centre_x", 0.02},
+                                            {"centre_y", -0.02},
+                                            {"centre_z", 0.03},
+                                            {"radius", 0.015},
+                                            {"gravity_x", 1}})
                   .get(),
               {.depends_on_position = false, .depends_on_acceleration = true});
 }
@@ -39,7 +50,7 @@ TEST(AttachedMass, PassesTheEffectChecks) {
 TEST(AttachedMass, HasItsWeightAndItsInertiaAtItsPlace) {
   const Eigen::Vector3d centre(0.08, 0.02, 0.02);
   // The model has no mass yet, so only the derivative is tested.
-  const auto mass = MakeEffect(
+  const auto mass = MakeFalling(
       "attached_mass",
       {{"mass", 0}, {"centre_x", 0.08}, {"centre_y", 0.02}, {"centre_z", 0.02}, {"radius", 0.006}});
   for (const int order : {1, 2}) {
@@ -55,7 +66,7 @@ TEST(AttachedMass, HasItsWeightAndItsInertiaAtItsPlace) {
 }
 
 TEST(AttachedMass, FallsOnTheNearestNodeWhenItIsSmall) {
-  const auto mass = MakeEffect(
+  const auto mass = MakeFalling(
       "attached_mass",
       {{"mass", 1}, {"centre_x", 0.3}, {"centre_y", 0.041}, {"centre_z", -0.01}, {"radius", 1e-6}});
   const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.16, 0.04, 0.04}, {2, 2, 2}), 1000);
@@ -107,11 +118,11 @@ TEST(AttachedMass, LengthensThePeriodOfAPendulum) {
       MakeBody(BoxMesh({-0.01, -0.01, -0.2}, {0.01, 0.01, 0}, {2, 1, 8}), 1000));
   const Eigen::Vector3d hinge(0, 0, 0), place(0, 0.01, -0.05);
   const auto attached = [&](double mass) {
-    return MakeEffect("attached_mass", {{"mass", mass},
-                                        {"centre_x", place.x()},
-                                        {"centre_y", place.y()},
-                                        {"centre_z", place.z()},
-                                        {"radius", 1e-4}});
+    return MakeFalling("attached_mass", {{"mass", mass},
+                                         {"centre_x", place.x()},
+                                         {"centre_y", place.y()},
+                                         {"centre_z", place.z()},
+                                         {"radius", 1e-4}});
   };
   const Eigen::VectorXi pinned = NodesWhere(
       body->mesh, [](const Eigen::Vector3d& X) { return std::abs(X.x()) < 1e-9 && X.z() > -1e-9; });
@@ -134,13 +145,30 @@ TEST(AttachedMass, LengthensThePeriodOfAPendulum) {
   }
 }
 
+// The weight has a potential where there is no inertia, in steps with a length, too.
+TEST(AttachedMass, HasItsPotentialInEveryEquilibrium) {
+  const auto mass = MakeFalling(
+      "attached_mass", {{"mass", 0.1}, {"centre_x", 0.08}, {"centre_y", 0}, {"centre_z", 0}});
+  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.16, 0.04, 0.04}, {2, 1, 1}), 1000);
+  const Eigen::VectorXd rest = body.mesh.nodes.reshaped(), zero = 0 * rest, state;
+  const Eigen::VectorXd raised = rest + Eigen::Vector3d(0, 0, 0.01).replicate(body.NodeCount(), 1);
+  for (const double step : {0.0, 0.3}) {
+    const auto energy = [&](bool has_inertia) {
+      return mass->Energy({body, raised, zero, zero, 0, step, state, nullptr, has_inertia});
+    };
+    ASSERT_TRUE(energy(false).has_value()) << step;
+    EXPECT_NEAR(*energy(false), 0.1 * kGravity * 0.01, 1e-12);
+    EXPECT_FALSE(energy(true).has_value());
+  }
+}
+
 TEST(DensityGradient, PassesTheEffectChecks) {
-  CheckEffect(MakeEffect("density_gradient", {{"gradient", 3000},
-                                              {"axis_x", 1},
-                                              {"axis_y", -2},
-                                              {"axis_z", 0.5},
-                                              {"origin_x", 0.02},
-                                              {"gravity_y", 2}})
+  CheckEffect(MakeFalling("density_gradient", {{"gradient", 3000},
+                                               {"axis_x", 1},
+                                               {"axis_y", -2},
+                                               {"axis_z", 0.5},
+                                               {"origin_x", 0.02},
+                                               {"gravity_y", 2}})
                   .get(),
               {.depends_on_position = false, .depends_on_acceleration = true});
 }
@@ -152,8 +180,8 @@ TEST(DensityGradient, AddsItsMassAndMovesItsCentre) {
     const TetMesh mesh = order == 1 ? body.mesh : ToQuadratic(body.mesh);
     const Body same = MakeBody(mesh, 700);
     const auto from_end =
-        MakeEffect("density_gradient", {{"gradient", 0}, {"axis_x", 7}, {"axis_z", 0}});
-    const auto from_centre = MakeEffect(
+        MakeFalling("density_gradient", {{"gradient", 0}, {"axis_x", 7}, {"axis_z", 0}});
+    const auto from_centre = MakeFalling(
         "density_gradient", {{"gradient", 0}, {"axis_x", 7}, {"axis_z", 0}, {"origin_x", 0.05}});
     // ∫ X dV = 160 cm³ · 5 cm, exactly for any mesh.
     const double moment = 0.1 * 0.04 * 0.04 * 0.05;
@@ -181,7 +209,7 @@ TEST(DensityGradient, StretchesAHangingBar) {
         std::make_shared<Body>(
             MakeBody(BoxMesh({0, 0, 0}, {0.02, 0.02, kLength}, {1, 1, 16 / order}, order), 1000)),
         {MakeEffect("linear", {{"young_modulus", kYoung}, {"poisson_ratio", 0}}),
-         MakeEffect("density_gradient", {{"gradient", kPerLength}})},
+         MakeFalling("density_gradient", {{"gradient", kPerLength}})},
         {}};
     Model held = model;
     held.grips.push_back(
@@ -202,6 +230,49 @@ TEST(DensityGradient, StretchesAHangingBar) {
   }
 }
 
+// The density at the ends would be 1000 ± 5000 kg/m³.
+TEST(DensityGradient, CannotMakeADensityNegative) {
+  const Model model{
+      std::make_shared<Body>(MakeBody(BoxMesh({0, 0, 0}, {0.1, 0.02, 0.02}, {5, 1, 1}), 1000)),
+      {MakeEffect("linear", {{"young_modulus", 1e5}, {"poisson_ratio", 0}}),
+       MakeFalling("density_gradient",
+                   {{"gradient", 1e5}, {"axis_x", 1}, {"axis_z", 0}, {"origin_x", 0.05}})},
+      {}};
+  MotionHistory history = RestHistory(model);
+  const StepSummary summary = Stepper(model, {}).Step(0.01, {}, &history);
+  EXPECT_EQ(summary.status, StepSummary::Status::kMissingMass);
+  EXPECT_THAT(summary.message,
+              testing::HasSubstr("density_gradient with a gradient of 1e+05 kg/m^4 removes"));
+  EXPECT_EQ(history.time, 0) << "no step was made";
+}
+
+TEST(AddedMass, TakesItsGravityFromTheModel) {
+  const Eigen::Vector3d gravity(1, 0, -9.81);
+  const auto read = [&](const std::string& setting, const std::optional<Eigen::Vector3d>& model) {
+    const Config config = Config::Parse(
+        "{type: attached_mass, mass: 12 g, centre: [1 cm, 0, 0]" + setting + "}", "a.yaml");
+    return Eigen::Vector3d(MakeEffect(config, nullptr, model)->Parameters().tail<3>());
+  };
+  const auto refusal = [&](const std::string& setting,
+                           const std::optional<Eigen::Vector3d>& model) {
+    try {
+      read(setting, model);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing was refused");
+  };
+  EXPECT_EQ(read("", gravity), gravity);
+  EXPECT_EQ(read(", gravity: [100 cm/s^2, 0, -981 cm/s^2]", gravity), gravity);
+  EXPECT_EQ(read(", gravity: [0, 0, 0]", gravity), Eigen::Vector3d::Zero())
+      << "a mass whose weight is one of the known forces";
+  EXPECT_THAT(refusal(", gravity: [0, 0, -9.81 m/s^2]", gravity),
+              testing::HasSubstr("gravity: the gravity of the model is [1, 0, -9.81] m/s^2"));
+  EXPECT_EQ(read(", gravity: [0, 0, -9.81 m/s^2]", {}), Eigen::Vector3d(0, 0, -9.81));
+  EXPECT_THAT(refusal("", {}),
+              testing::HasSubstr("gravity: must be given in a model without gravity"));
+}
+
 TEST(AddedMass, IsReadFromYaml) {
   const Config config = Config::Parse(
       "effects:\n"
@@ -216,7 +287,8 @@ TEST(AddedMass, IsReadFromYaml) {
   mass << 0.012, 0.01, 0, -0.003, 0.004, 0, -9.81, 0;
   gradient << 500, 0, 0, 1, 0, 0, 0, 0, 0, -kGravity;
   EXPECT_LT((MakeEffect(items[0])->Parameters() - mass).norm(), 1e-12);
-  EXPECT_LT((MakeEffect(items[1])->Parameters() - gradient).norm(), 1e-12);
+  const Eigen::Vector3d gravity(0, 0, -kGravity);
+  EXPECT_LT((MakeEffect(items[1], nullptr, gravity)->Parameters() - gradient).norm(), 1e-12);
   EXPECT_THROW(MakeEffect(items[2]), InputError) << "a place must be given";
   EXPECT_THROW(MakeEffect(items[3]), InputError) << "a direction of length 0";
 }

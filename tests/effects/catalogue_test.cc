@@ -48,6 +48,24 @@ TEST(Catalogue, NamesLookAlikesBothWays) {
   }
 }
 
+TEST(Catalogue, ExcludesOnlyEffectsThatExist) {
+  for (const CatalogueEntry& entry : Catalogue())
+    for (const std::string& other : entry.card->excludes)
+      EXPECT_NE(FindEntry(other), nullptr) << entry.card->type << " and " << other;
+}
+
+TEST(Catalogue, LetsAModelHaveOneFreeStrain) {
+  const auto card = [](const std::string& type) -> const EffectCard& {
+    return *FindEntry(type)->card;
+  };
+  EXPECT_FALSE(MayStandBeside(card("swelling"), card("swelling_field")));
+  EXPECT_FALSE(MayStandBeside(card("swelling_field"), card("swelling")));
+  EXPECT_FALSE(MayStandBeside(card("swelling_field"), card("swelling_field")));
+  EXPECT_TRUE(MayStandBeside(card("swelling"), card("inclusion")));
+  EXPECT_TRUE(MayStandBeside(card("attached_mass"), card("attached_mass")));
+  EXPECT_FALSE(MayStandBeside(card("gravity"), card("gravity")));
+}
+
 TEST(Catalogue, SaysOfEachEffectWhereItIsTried) {
   for (const CatalogueEntry& entry : Catalogue()) {
     const EffectCard& card = *entry.card;

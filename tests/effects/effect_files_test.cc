@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <filesystem>
 
 #include "effects/catalogue.h"
@@ -17,7 +18,7 @@ TEST(EffectFiles, AreAllUnderstood) {
     ++files;
     const Config config = Config::Load(entry.path());
     EXPECT_NO_THROW({
-      MakeEffect(config, material.get());
+      MakeEffect(config, material.get(), Eigen::Vector3d(0, 0, -9.80665));
       config.RefuseUnknownKeys();
     }) << entry.path();
   }

@@ -85,18 +85,57 @@ TEST(PointForce, GivesItsImpulse) {
   EXPECT_LT((momentum - impulse).norm(), 1e-6 * impulse.norm());
 }
 
+// An equilibrium carries the whole force, also at the end of a step that began before the force
+// did. Ten steps of 0.1 s end at 1 s up to rounding.
+TEST(PointForce, DoesNotDependOnTheLengthOfQuasiStaticSteps) {
+  std::map<std::string, double> values = ForceAtTheTop(0.02);
+  values["start"] = 1;
+  values["stop"] = 3;
+  Model model{
+      std::make_shared<Body>(MakeBody(BoxMesh({0, 0, 0}, {0.08, 0.04, 0.04}, {2, 1, 1}), 1000)),
+      {MakeEffect("corotational", {{"young_modulus", 1e6}, {"poisson_ratio", 0.3}}),
+       MakeEffect("point_force", values)},
+      {}};
+  model.grips = {
+      {NodesWhere(model.body->mesh, [](const Eigen::Vector3d& X) { return X.x() < 1e-9; }), {}}};
+  const Eigen::VectorXd rest = model.body->mesh.nodes.reshaped();
+  const auto displacement = [&](const std::vector<double>& steps) {
+    Stepper stepper(model, {.scheme = TimeScheme::kQuasiStatic});
+    MotionHistory history = RestHistory(model);
+    for (const double length : steps) {
+      const StepSummary step = stepper.Step(length, {}, &history);
+      EXPECT_TRUE(step.IsUsable()) << step.message;
+    }
+    return Eigen::VectorXd(history.position - rest);
+  };
+  MotionHistory held = RestHistory(model);
+  held.time = 2;
+  ASSERT_TRUE(Stepper(model, {}).Equilibrium({}, &held).IsUsable());
+  const Eigen::VectorXd expected = held.position - rest;
+  ASSERT_GT(expected.norm(), 0);
+  const std::vector<std::vector<double>> paths{
+      {2}, {1.5, 0.5}, {0.5, 1}, std::vector<double>(10, 0.1)};
+  for (const std::vector<double>& steps : paths) {
+    // Each step is solved to 1e-8 of its forces.
+    EXPECT_LT((displacement(steps) - expected).norm(), 1e-6 * expected.norm()) << steps.size();
+  }
+  EXPECT_LT(displacement({0.5}).norm(), 1e-9 * expected.norm()) << "before the start";
+}
+
 TEST(PointForce, ActsInStaticsFromStartAndNotAtStop) {
   const auto effect = MakeEffect("point_force", ForceAtTheTop(0.02));
   const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.08, 0.04, 0.04}, {2, 1, 1}), 1000);
   const Eigen::VectorXd rest = body.mesh.nodes.reshaped(), zero = 0 * rest, state;
-  const auto size = [&](double time) {
-    Eigen::VectorXd force = zero;
-    effect->AddForce({body, rest, zero, zero, time, 0, state}, &force);
-    return force.norm();
-  };
-  EXPECT_EQ(size(0.29), 0);
-  EXPECT_GT(size(0.295), 0);
-  EXPECT_EQ(size(0.42), 0);
+  for (const double step : {0.0, 0.2}) {  // quasi-static steps have a length
+    const auto size = [&](double time) {
+      Eigen::VectorXd force = zero;
+      effect->AddForce({body, rest, zero, zero, time, step, state}, &force);
+      return force.norm();
+    };
+    EXPECT_EQ(size(0.29), 0);
+    EXPECT_GT(size(0.295), 0);
+    EXPECT_EQ(size(0.42), 0);
+  }
 }
 
 TEST(PointForce, IsReadFromYaml) {

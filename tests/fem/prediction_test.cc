@@ -312,6 +312,29 @@ TEST(Prediction, ReportsWhereItStopped) {
   EXPECT_LT(HeldBar::LargestDistance(visited, bar.Run(times)), 1e-12);
 }
 
+// A negative mass stands for a void. More than there is cannot be missing; a fit that tries it goes
+// on, as with any prediction that stops.
+TEST(Prediction, ReportsAMassThatIsNotThere) {
+  const auto with = [](double mass) {
+    HeldBar bar;
+    bar.effects.push_back(MakeEffect("attached_mass", {{"mass", mass},
+                                                       {"centre_x", 0.08},
+                                                       {"centre_y", 0.01},
+                                                       {"centre_z", 0.01},
+                                                       {"gravity_x", 0},
+                                                       {"gravity_y", 0},
+                                                       {"gravity_z", -9.80665}}));
+    return bar.Run({kStart, kStart + kTimeStep});
+  };
+  const Visited light = with(-2e-4);  // of about 4 g around the place
+  EXPECT_TRUE(light.summary.IsUsable()) << light.summary.message;
+  const Visited impossible = with(-0.02);
+  EXPECT_EQ(impossible.summary.status, PredictionSummary::Status::kStopped);
+  EXPECT_THAT(impossible.summary.message,
+              testing::StartsWith("attached_mass with a mass of -0.02 kg removes "));
+  EXPECT_EQ(impossible.summary.states, 0);
+}
+
 TEST(Prediction, ReportsThatItCannotStart) {
   HeldBar bar;
   bar.options.held_force.setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "effects/catalogue.h"
+#include "fem/cloneable_effect.h"
 #include "fem/prediction.h"
 #include "fem/prescribed_force.h"
 #include "support/box_mesh.h"
@@ -124,6 +125,50 @@ TEST(ReducedResponse, FollowsAQuasiStaticMotion) {
         EXPECT_LT((response.basis() * q - exact[index]).norm(), 0.02 * exact[index].norm());
       });
   EXPECT_EQ(visited, (std::vector<int>{0, 1, 2, 3}));
+}
+
+// A support of each node that acts in steps with inertia only.
+class MovingSupport final : public CloneableEffect<MovingSupport> {
+ public:
+  const EffectCard& Card() const override {
+    static const EffectCard card{};
+    return card;
+  }
+  Eigen::VectorXd Parameters() const override { return {}; }
+  void SetParameters(const Eigen::VectorXd&) {}
+  void AddForce(const Kinematics&, Eigen::VectorXd*) const override {}
+  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool,
+                   BlockMatrix* tangent) const override {
+    constexpr double kStiffness = 100;  // N/m; that of the bar at its tip is 4 N/m
+    if (!at.has_inertia) return;
+    for (const int diagonal : tangent->pattern().diagonal)
+      tangent->Block(diagonal).diagonal().array() -= weights.position * kStiffness;
+  }
+  void AddParameterDerivative(const Kinematics&, int, Eigen::VectorXd*) const override {}
+};
+
+TEST(ReducedResponse, EvaluatesEffectsWithTheInertiaOfTheMotion) {
+  SwingingBar bar;
+  bar.model.effects.push_back(std::make_shared<const MovingSupport>());
+  const Eigen::VectorXd rest = bar.model.body->mesh.nodes.reshaped();
+  const std::vector<TrajectoryState> states = {
+      {kStart, rest, 0 * rest, std::vector<Eigen::VectorXd>(bar.model.effects.size())}};
+  const auto deflection = [&](TimeScheme scheme) {
+    const ReducedResponse response(bar.model, states, bar.pull,
+                                   {.scheme = scheme, .time_step = kStep});
+    EXPECT_TRUE(response.IsUsable()) << response.message();
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
+    double norm = 0;
+    response.Respond(
+        one, [&](double) { return one; }, {kStart},
+        [&](int, const Eigen::MatrixXd& position, const Eigen::MatrixXd&) {
+          norm = (response.basis() * position).norm();
+        });
+    return norm;
+  };
+  const double supported = deflection(TimeScheme::kTwoStep);
+  EXPECT_GT(supported, 0);
+  EXPECT_LT(supported, 0.5 * deflection(TimeScheme::kQuasiStatic));
 }
 
 }  // namespace

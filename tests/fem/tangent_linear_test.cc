@@ -8,6 +8,7 @@
 #include <string>
 
 #include "effects/catalogue.h"
+#include "fem/prescribed_force.h"
 #include "fem/simulate.h"
 #include "support/box_mesh.h"
 
@@ -184,6 +185,46 @@ TEST(TangentLinear, FollowsTheMemoryOfEffects) {
   ExpectParameterDerivative(motion, motion.effects[0], 0, 50, 1e-5);
   ExpectParameterDerivative(motion, motion.effects[kDamped], 0, 50, 1e-5);
   ExpectParameterDerivative(motion, motion.effects[kDamped], 1, 1e-4, 1e-4);
+}
+
+// A stiff block between an elastic bed and one that slips at 10 µm, the smallest plausible
+// distance. The first load moves the block by u = (F − k d A)/(k₂ A) and its bed by u − d. Under
+// the second load it sticks to the bed, 0.5 µm from the opposite limit, so that du/dF = 1/(k₂ A)
+// stays. A difference over 1 µm of slip would pass the limit.
+TEST(TangentLinear, ResolvesTheLimitOfASlip) {
+  constexpr double kBed = 1e6, kOther = 4e5;  // k and k₂, Pa/m
+  constexpr double kLimit = 1e-5;             // d, m
+  const auto body =
+      std::make_shared<Body>(MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}), 1000));
+  const Eigen::VectorXd areas = NodeBoundaryAreas(*body);
+  const double area = areas.sum(), slip = 4 * kLimit;
+  const double first = area * (kOther * (slip + kLimit) + kBed * kLimit);
+  const double second = area * (kOther * slip - 0.95 * kLimit * (kBed + kOther));
+  const auto gravity = MakeEffect("gravity", {{"acceleration_x", 0}});
+  const auto load = std::make_shared<PrescribedForce>(areas / area, [=](double time) {
+    return Eigen::Vector3d(time < 1.5 ? first : second, 0, 0);
+  });
+  const Model model{body,
+                    {MakeEffect("linear", {{"young_modulus", 1e9}, {"poisson_ratio", 0}}),
+                     MakeEffect("slipping_support", {{"modulus", kBed}, {"slip_distance", kLimit}}),
+                     MakeEffect("elastic_support", {{"modulus", kOther}}), gravity, load},
+                    {}};
+  Stepper stepper(model, {.scheme = TimeScheme::kQuasiStatic});
+  TangentLinear linear(model, {Perturbation{gravity, 0}});
+  MotionHistory history = RestHistory(model);
+  const double by_gravity = body->node_mass.sum() / (kOther * area);
+  for (const double place : {slip + kLimit, slip - 0.95 * kLimit}) {
+    const MotionHistory before = history;
+    const StepSummary step = stepper.Step(1, {}, &history);
+    ASSERT_TRUE(step.IsUsable()) << step.message;
+    ASSERT_TRUE(linear.Advance(before, TimeScheme::kQuasiStatic, 1, history.position).IsUsable());
+    const Eigen::Matrix3Xd moved =
+        history.position.reshaped(3, body->NodeCount()) - body->mesh.nodes;
+    // Under tractions of some 10 Pa the block is strained by 1e-8 of its 30 mm.
+    EXPECT_NEAR(moved.row(0).mean(), place, 1e-4 * kLimit);
+    const Eigen::Matrix3Xd change = linear.position().col(0).reshaped(3, body->NodeCount());
+    EXPECT_NEAR(change.row(0).mean(), by_gravity, 1e-4 * by_gravity);
+  }
 }
 
 TEST(TangentLinear, GivesTheResponseToAnEffectWithMemoryOutsideTheModel) {

@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "core/config.h"
+#include "core/quantity.h"
 #include "scan/region.h"
 #include "standard/published_table.h"
 
@@ -91,6 +93,17 @@ double ReadPublished(const Config& config, const Dimension& dimension,
   return scale * value;
 }
 
+// Reads the unit in which the values are shown, by default the SI unit.
+void ReadUnit(const Config& config, const Dimension& dimension, Wanted* wanted) {
+  wanted->unit = config.Text("shown_in", dimension.unit);
+  if (wanted->unit.empty()) return;
+  try {
+    wanted->scale = ParseQuantity("1 " + wanted->unit, dimension);
+  } catch (const std::invalid_argument& problem) {
+    config.Fail("shown_in", problem.what());
+  }
+}
+
 Wanted ReadWanted(const Config& config, const std::optional<PublishedTable>& table) {
   Wanted wanted;
   ReadQuantity(config, &wanted);
@@ -104,7 +117,7 @@ Wanted ReadWanted(const Config& config, const std::optional<PublishedTable>& tab
   wanted.label = config.Text("label", "");
   wanted.time = config.Quantity("time", kTime, kNotNegative, 0);
   wanted.value = ReadPublished(config, dimension, table);
-  wanted.unit = config.Text("shown_in", dimension.unit);
+  ReadUnit(config, dimension, &wanted);
   return wanted;
 }
 

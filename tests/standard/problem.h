@@ -67,8 +67,8 @@ struct Wanted {
   int mode = 1;      // 1 is the lowest
   double time = 0;   // s; 0: the end of the motion
   double value = 0;  // published
-  double scale = 1;  // a value of the file's unit in SI units
-  std::string unit;
+  std::string unit;  // in which values are shown; empty for a plain number
+  double scale = 1;  // 1 of that unit in SI units
 };
 
 // The error that another program has on the same problem, with its source.

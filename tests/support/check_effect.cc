@@ -92,8 +92,9 @@ class Checker {
 
  private:
   Kinematics At(const Motion& motion) const {
-    return {moving_.body,  motion.position,    motion.velocity, motion.acceleration,
-            options_.time, options_.time_step, moving_.state,   options_.elasticity};
+    return {moving_.body,        motion.position,    motion.velocity, motion.acceleration,
+            options_.time,       options_.time_step, moving_.state,   options_.elasticity,
+            /*has_inertia=*/true};
   }
 
   Eigen::VectorXd Force(const Motion& motion) const {
@@ -349,8 +350,10 @@ class Checker {
     // Large enough that several threads find work.
     const MovingBody large = MakeMovingBody(effect_, order_, {7, 6, 5}, options_);
     const Motion& motion = large.motion;
-    const Kinematics at{large.body,    motion.position,    motion.velocity, motion.acceleration,
-                        options_.time, options_.time_step, large.state,     options_.elasticity};
+    const Kinematics at{large.body,          motion.position,     motion.velocity,
+                        motion.acceleration, options_.time,       options_.time_step,
+                        large.state,         options_.elasticity,
+                        /*has_inertia=*/true};
     const int threads = ThreadCount();
     Eigen::VectorXd force[2];
     BlockMatrix tangent[2] = {BlockMatrix(large.body.pattern), BlockMatrix(large.body.pattern)};

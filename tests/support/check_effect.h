@@ -33,7 +33,7 @@ struct CheckEffectOptions {
 Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::VectorXd& position,
                         const Eigen::VectorXd& velocity);
 
-// At a random deformed and moving state, for linear and quadratic elements:
+// At a random deformed state, moving with inertia, for linear and quadratic elements:
 //  - the card is complete and its parameters agree with Parameters() and WithParameters();
 //  - f = −∂E/∂x where the effect has an energy, and f = −Σ w P ∂N/∂X where it is a stress;
 //  - AddTangents and AddSkewTangents together, and AddParameterDerivative, agree with central
