@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "calibration/calibration_fits.h"
@@ -48,11 +49,30 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
   StepCheck check;
   check.order = OrderOf(half.scheme);
   if (now.usable && then.usable && now.residual.size() == then.residual.size()) {
-    check.error = RootMeanSquare(Eigen::VectorXd(then.residual - now.residual));
-    check.allowed = std::max(kOfNoise, kOfMisfit * RootMeanSquare(now.residual));
+    Prediction change = now;
+    change.residual = then.residual - now.residual;
+    check.error = RootMeanSquare(change);
+    check.allowed = std::max(kOfNoise, kOfMisfit * RootMeanSquare(now));
   }
   progress->End(fmt::format("{:.3g} ms, error about {:.2g} σ", 2e3 * half.time_step, check.error));
   return check;
+}
+
+// AdaptedFit::note where the search ends with a step that fails this check.
+std::string NoteOn(const StepCheck& check, double time_step, bool is_out_of_steps) {
+  const std::string found =
+      std::isfinite(check.error)
+          ? fmt::format(
+                "half of it would change the fitted frames by {:.2g} σ, where {:.2g} σ are "
+                "allowed",
+                check.error, check.allowed)
+          : "its error is not known, because the motion could not be predicted with half of it";
+  return fmt::format(
+      "the time step of {:.3g} ms may be too long: {}, and {}; motion.time_step gives a shorter "
+      "one",
+      1e3 * time_step, found,
+      is_out_of_steps ? fmt::format("{} step lengths were tried", kMostSteps)
+                      : "the predictions that a fit may take are used up");
 }
 
 }  // namespace
@@ -98,7 +118,12 @@ AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
       }
       further = problem.WithEstimatedNoise();
       further.time_step *= check.Share();
-      if (tried == kMostSteps || budget.IsUsedUp(further.time_step)) return fit;
+      const bool is_out_of_steps = tried == kMostSteps;
+      if (is_out_of_steps || budget.IsUsedUp(further.time_step)) {
+        if (!fit.calibration.estimates.empty())
+          fit.note = NoteOn(check, study->time_step, is_out_of_steps);
+        return fit;
+      }
     }
     *study = std::move(further);
   }

@@ -67,7 +67,7 @@ double BeginningOfMotion(const RecordingModel& model, const std::vector<int>& fr
 
 double Left(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
   const Prediction prediction = problem.Predict(values, /*with_jacobian=*/false);
-  return prediction.usable ? RootMeanSquare(prediction.residual) : kUnlimited;
+  return prediction.usable ? RootMeanSquare(prediction) : kUnlimited;
 }
 
 // Stages of one fit, whose predictions are counted together.
@@ -162,7 +162,7 @@ class Fitter {
         [&](const Eigen::VectorXd& at, bool with_jacobian) {
           Prediction prediction = problem_.Predict(at, with_jacobian, horizon, &memory_);
           progress_.Report(++evaluations_,
-                           prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
+                           prediction.usable ? RootMeanSquare(prediction) : std::nan(""));
           return prediction;
         },
         within);

@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "prediction/recording_noise.h"
 #include "prediction/recording_nuisances.h"
+#include "prediction/setting_derivative.h"
 
 namespace lacuna {
 namespace {
@@ -25,7 +26,7 @@ std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& par
   std::vector<MisfitDirection> directions;
   for (const ModelParameter& parameter : parameters)
     for (const auto& [effect, index] : parameter.places)
-      directions.push_back({.perturbation = {.effect = effects[effect], .parameter = index}});
+      directions.push_back({.perturbation = ByParameter(effects[effect], index)});
   return directions;
 }
 
@@ -66,15 +67,30 @@ void AppendRows(const Eigen::MatrixXd& more, Eigen::MatrixXd* all) {
   all->bottomRows(more.rows()) = more;
 }
 
-// Appends whitened rows to a prediction. `series`: rows of one frame.
+// Appends whitened rows to a prediction. `series`: rows of one frame. `count`: for each point (or
+// each component of a reaction) in each frame, 0 where it was not observed.
 void AppendWhitened(const Eigen::MatrixXd& residual, const Eigen::MatrixXd& jacobian,
-                    Eigen::Index series, Prediction* prediction) {
+                    Eigen::Index series, const std::vector<double>& count, Prediction* prediction) {
   const Eigen::Index first = prediction->residual.size();
+  if (!count.empty())
+    prediction->unobserved += residual.rows() / static_cast<Eigen::Index>(count.size()) *
+                              std::count(count.begin(), count.end(), 0);
   prediction->residual.conservativeResize(first + residual.rows());
   prediction->residual.tail(residual.rows()) = residual.col(0);
   AppendRows(jacobian, &prediction->jacobian);
   for (Eigen::Index row = 0; row < residual.rows(); ++row)
     prediction->before.push_back(row < series ? -1 : first + row - series);
+}
+
+// The reason why the noise of markers cannot be estimated from the fitted frames.
+std::string WhyWithoutNoise(const std::vector<RecordingModel>& models) {
+  constexpr size_t kFewestFrames = 3;  // noise shows in second differences
+  size_t most = 0;
+  for (const RecordingModel& model : models)
+    if (model.Markers() != nullptr) most = std::max(most, model.FittedFrames().size());
+  if (most == 0) return "no recording of markers is fitted";
+  if (most < kFewestFrames) return "fewer than three frames of markers are fitted";
+  return "the markers do not move at all, or none is seen in three frames that follow one another";
 }
 
 bool HasTheSameMarkers(const Recording& a, const Recording& b) {
@@ -124,9 +140,8 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
   estimates_noise_ = !has_scans && (noise_ == 0 || study.noise_is_estimated);
   if (noise_ == 0 || !has_markers) noise_ = of_markers;
   if (has_markers && !(noise_ > 0)) {
-    throw InputError(
-        fmt::format("{}: noise: cannot be estimated (the markers do not move at all); give it",
-                    study.file.string()));
+    throw InputError(fmt::format("{}: noise: cannot be estimated ({}); give it",
+                                 study.file.string(), WhyWithoutNoise(models_)));
   }
   if (!has_scans) return;
   scan_noise_ = study.scan.noise > 0 ? study.scan.noise : of_scans;
@@ -258,7 +273,7 @@ Prediction CalibrationProblem::PredictRecording(size_t r, const Eigen::VectorXd&
     return Whitened(what, misfit.count, model.PointCount(), ErrorsOf(model), misfit.deformation);
   };
   AppendWhitened(whitened(misfit.residual), whitened(columns(misfit.jacobian)),
-                 model.observer().Components() * model.PointCount(), &part);
+                 model.observer().Components() * model.PointCount(), misfit.count, &part);
   for (size_t k = 0; k < misfit.reactions.size(); ++k) {
     const ReactionMisfit& reaction = misfit.reactions[k];
     const auto whitened_force = [&](const Eigen::MatrixXd& what) {
@@ -266,7 +281,7 @@ Prediction CalibrationProblem::PredictRecording(size_t r, const Eigen::VectorXd&
                       ReadingErrors(model.Reactions()[k]));
     };
     AppendWhitened(whitened_force(reaction.residual), whitened_force(columns(reaction.jacobian)),
-                   reaction.components, &part);
+                   reaction.components, reaction.count, &part);
   }
   return part;
 }
@@ -312,6 +327,7 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
     if (with_jacobian) all.jacobian.middleRows(row, part.residual.size()) = part.jacobian;
     for (const Eigen::Index before : part.before)
       all.before.push_back(before < 0 ? before : row + before);
+    all.unobserved += part.unobserved;
     row += part.residual.size();
   }
   return all;

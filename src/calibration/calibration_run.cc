@@ -24,7 +24,7 @@ namespace {
 
 // Incremented whenever a change of the code changes the result of the stage, or its files.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 27;
+constexpr int kCalibrationVersion = 28;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
@@ -55,6 +55,7 @@ std::vector<HeldParameter> HeldIn(const PredictionStudy& study) {
 struct CalibrationStage {
   CalibrationRecord record;
   CsvTable misfit, reactions, torques;
+  std::optional<OtherMesh> other_mesh;  // with which the error of the mesh was estimated
 };
 
 CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& reference,
@@ -73,6 +74,7 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   // not converge usually lacks physics.
   record.usable = calibration.usable || calibration.is_out_of_budget;
   record.message = calibration.message;
+  if (!fit.note.empty()) record.notes.push_back(fit.note);
   record.noise = problem.noise();
   record.scan_noise = problem.scan_noise();
   record.time_step = study.time_step;
@@ -124,6 +126,8 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
       CountModelErrors(problem.parameters()[k], *parameter.at_limit, errors.deviation[at],
                        &parameter.estimate);
     }
+    record.notes.insert(record.notes.end(), errors.notes.begin(), errors.notes.end());
+    stage.other_mesh = errors.other_mesh;
     progress->End();
   }
   for (size_t k = 0; k < record.parameters.size(); ++k) {
@@ -178,9 +182,10 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
         if (!value.misfit.empty()) SaveCsv(value.misfit, folder / "misfit.csv");
         if (!value.reactions.empty()) SaveCsv(value.reactions, folder / "reactions.csv");
         if (!value.torques.empty()) SaveCsv(value.torques, folder / "torques.csv");
+        if (value.other_mesh) SaveOtherMesh(*value.other_mesh, folder);
       },
       [](const std::filesystem::path& folder) {
-        return CalibrationStage{ReadCalibrationFile(folder / "calibration.json"), {}, {}, {}};
+        return CalibrationStage{ReadCalibrationFile(folder / "calibration.json"), {}, {}, {}, {}};
       });
   run.Finish();
   stage.record.mesh = reference.quality;

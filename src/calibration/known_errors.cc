@@ -6,19 +6,26 @@
 #include <vector>
 
 #include "calibration/linear_misfit.h"
-#include "calibration/mesh_limit.h"
 #include "calibration/parameter_response.h"
+#include "calibration/side_by_side.h"
 #include "calibration/size_errors.h"
 #include "calibration/step_errors.h"
-#include "core/parallel.h"
 
 namespace lacuna {
 
 KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
-  KnownErrors errors{{}, values, Eigen::VectorXd::Zero(values.size())};
+  KnownErrors errors;
+  errors.at_limit = values;
+  errors.deviation = Eigen::VectorXd::Zero(values.size());
   const std::vector<CalibratedParameter>& parameters = problem.parameters();
   const LinearisedMisfit misfit = problem.Linearise(values, true);
-  if (!misfit.usable) return errors;
+  if (!misfit.usable) {
+    errors.notes.push_back(
+        "the intervals do not contain the errors of the mesh, of the time step and of the object's "
+        "dimensions: the fitted motion could not be predicted again (" +
+        misfit.message + ")");
+    return errors;
+  }
   const auto add = [&](const Eigen::VectorXd& change) {  // in the units of MovedBy
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       const bool log_scale = parameters[static_cast<size_t>(k)].log_scale;
@@ -31,7 +38,7 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
   std::optional<OtherMesh> mesh;
   std::optional<StepErrors> step;
   Eigen::MatrixXd by_size;
-  ParallelFor(3, 1, [&](int64_t k) {
+  ForEachStudy(problem, 3, [&](int64_t k) {
     if (k == 0) mesh = MakeOtherMesh(problem, values, misfit, /*fitted_only=*/true);
     if (k == 1) step = FindStepErrors(problem, values, misfit);
     if (k == 2) by_size = ChangesBySize(problem, values, misfit);
@@ -44,16 +51,27 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
     to_limit = mesh->ToLimit() * change;
     errors.at_mesh_limit = MovedBy(parameters, values, to_limit);
     add(mesh->DeviationOfLimit() * change);
+    errors.other_mesh = std::move(mesh);
   }
   if (step) {
     const Eigen::VectorXd change = response.To(step->to_limit);
     to_limit += change;
     add(StepErrors::kLimitDeviation * change);
     add(StepErrors::kDepartureDeviation * response.To(step->departure));
+  } else {
+    errors.notes.emplace_back(
+        "the intervals do not contain the error of the time step: the motion could not be "
+        "predicted with a shorter one");
   }
   errors.at_limit = MovedBy(parameters, values, to_limit);
-  const Eigen::MatrixXd by_sizes = response.To(by_size);
-  for (const auto change : by_sizes.colwise()) add(change);
+  if (by_size.cols() > 0) {
+    const Eigen::MatrixXd by_sizes = response.To(by_size);
+    for (const auto change : by_sizes.colwise()) add(change);
+  } else if (problem.study().size_deviation > 0) {
+    errors.notes.emplace_back(
+        "the intervals do not contain the uncertainty of the object's dimensions (size_deviation): "
+        "the motion of a larger object could not be predicted");
+  }
   return errors;
 }
 

@@ -12,8 +12,12 @@
 #define LACUNA_CALIBRATION_KNOWN_ERRORS_H_
 
 #include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "calibration/mesh_limit.h"
 
 namespace lacuna {
 
@@ -22,6 +26,7 @@ struct KnownErrors {
   // The values that would have been fitted with infinitely fine elements; empty where no other mesh
   // can be made or simulated (calibration/mesh_limit.h).
   Eigen::VectorXd at_mesh_limit;
+  std::optional<OtherMesh> other_mesh;  // from which they were extrapolated
   // The values that would have been fitted with infinitely fine elements, as far as these are
   // known, and infinitely short time steps.
   Eigen::VectorXd at_limit;
@@ -29,6 +34,9 @@ struct KnownErrors {
   // which each is fitted: of the extrapolations to infinitely fine elements and short steps, and of
   // the dimensions (PredictionStudy::size_deviation).
   Eigen::VectorXd deviation;
+  // The errors that could not be computed, so that `at_limit` and `deviation` do not contain them.
+  // Where only those of the mesh could not be, `at_mesh_limit` is empty and there is no note.
+  std::vector<std::string> notes;
 };
 
 // `values`: the fitted ones. Throws Interrupted.

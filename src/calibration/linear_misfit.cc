@@ -34,17 +34,6 @@ Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
   return moved;
 }
 
-Eigen::VectorXd ChangeTo(const Eigen::VectorXd& moved,
-                         const std::vector<CalibratedParameter>& parameters,
-                         const Eigen::VectorXd& values) {
-  Eigen::VectorXd change = moved - values;
-  for (size_t k = 0; k < parameters.size(); ++k) {
-    const Eigen::Index at = static_cast<Eigen::Index>(k);
-    if (parameters[k].log_scale) change[at] = values[at] * std::log(moved[at] / values[at]);
-  }
-  return change;
-}
-
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
                              double correlation_time, bool fitted_only) {
   Eigen::MatrixXd white(rows.rows(), rows.cols());
@@ -85,12 +74,20 @@ NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
   return level;
 }
 
-Eigen::Index ObservedRows(const LinearisedMisfit& misfit) {
+Eigen::Index ObservedRows(const LinearisedMisfit& misfit, bool fitted_only) {
   Eigen::Index observed = 0;
   for (const LinearisedMisfit::Part& part : misfit.parts)
-    observed += std::count_if(part.layout.count.begin(), part.layout.count.end(),
-                              [](double count) { return count > 0; });
+    for (Eigen::Index row = 0; row < part.layout.Rows(); ++row)
+      observed += part.layout.count[row] > 0 &&
+                  (!fitted_only || part.fitted[row / part.layout.series] != 0);
   return observed;
+}
+
+double RmsOverSigma(const Eigen::VectorXd& residual, const LinearisedMisfit& misfit,
+                    bool fitted_only) {
+  const Eigen::Index observed = std::max<Eigen::Index>(1, ObservedRows(misfit, fitted_only));
+  return std::sqrt(WhitenedRows(residual, misfit, 0, fitted_only).squaredNorm() /
+                   static_cast<double>(observed));
 }
 
 double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {

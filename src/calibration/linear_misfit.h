@@ -23,11 +23,6 @@ std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& par
 Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
                         const Eigen::VectorXd& values, const Eigen::VectorXd& change);
 
-// The change with which MovedBy() gives `moved`.
-Eigen::VectorXd ChangeTo(const Eigen::VectorXd& moved,
-                         const std::vector<CalibratedParameter>& parameters,
-                         const Eigen::VectorXd& values);
-
 // Rows of a linearised misfit, whitened with the measurement errors of their recording.
 // `fitted_only`: rows of frames that were not fitted become 0.
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
@@ -44,8 +39,12 @@ struct NoiseLevel {
 NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
                    Eigen::Index parameters, double least);
 
-// The number of rows that were observed.
-Eigen::Index ObservedRows(const LinearisedMisfit& misfit);
+// The number of rows that were observed; `fitted_only`: in frames that were fitted.
+Eigen::Index ObservedRows(const LinearisedMisfit& misfit, bool fitted_only = false);
+
+// The rms over these rows of a residual (m, not whitened), over σ; 0 if there are none.
+double RmsOverSigma(const Eigen::VectorXd& residual, const LinearisedMisfit& misfit,
+                    bool fitted_only = false);
 
 // The rms of the whitened rows that were observed and held out (of all rows where none were held
 // out).

@@ -2,16 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "analysis/linear_evidence.h"
 #include "calibration/linear_misfit.h"
 #include "calibration/other_elements.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_file.h"
+#include "core/npy.h"
 
 namespace lacuna {
 namespace {
+
+using nlohmann::json;
+
+// The files of SaveOtherMesh().
+constexpr const char* kDescription = "other_mesh.json";
+constexpr const char* kResiduals = "other_mesh.npy";
 
 // A finer mesh has about kFineElements elements, but the ratio of the element volumes is kept
 // between these limits. A study with more than kManyElements is compared with a mesh whose elements
@@ -35,10 +46,14 @@ constexpr double kScoutRatio = 3, kScoutBelow = 1.5;
 constexpr double kLeastReduction = 0.5, kSettled = 1;
 constexpr double kShortestStep = 1.0 / 4;  // fraction of a full step
 
-// The ratio of the element volumes: the study's over those of the other mesh.
-double RatioFor(const CalibrationProblem& problem) {
+// The ratio of the element volumes: the study's over those of the other mesh. Far from the
+// measurements, what another mesh changes is not what it changes in the true motion, so that it is
+// not worth the cost of the finest mesh.
+double RatioFor(const CalibrationProblem& problem, const LinearisedMisfit& misfit) {
   const double elements = static_cast<double>(problem.body()->ElementCount());
   if (elements > kManyElements) return 1 / kLeastVolumeRatio;
+  if (RmsOverSigma(misfit.residual, misfit, /*fitted_only=*/true) > kFarFromTruth)
+    return kLeastVolumeRatio;
   return std::clamp(kFineElements / elements, kLeastVolumeRatio, kMostVolumeRatio);
 }
 
@@ -147,14 +162,16 @@ class ChangeSearch {
     Eigen::VectorXd change;
     Eigen::VectorXd residual;  // of the other mesh, m; empty: it could not be simulated
   };
-  Found Run(const CalibrationProblem& other, Eigen::VectorXd start) const {
+  // `known`: the residual of the other mesh after the change `start`; empty: unknown.
+  Found Run(const CalibrationProblem& other, Eigen::VectorXd start,
+            const Eigen::VectorXd& known = {}) const {
     for (Eigen::Index k = 0; k < start.size(); ++k) {
       const double most = prior_.most[static_cast<size_t>(k)];
       start[k] = std::clamp(start[k], -most, most);
     }
     LinearisedMisfit latest;
     Eigen::VectorXd change = start;
-    Tried best = At(other, change, &latest);
+    Tried best = known.size() > 0 ? Compared(known) : At(other, change, &latest);
     if (best.difference.size() == 0) return {change, {}};
     double length = 1;
     for (int step = 0; step < kMostSteps && length >= kShortestStep; ++step) {
@@ -187,8 +204,13 @@ class ChangeSearch {
            LinearisedMisfit* latest) const {
     LinearisedMisfit here =
         other.Linearise(MovedBy(parameters_, values_, change), false, {}, nullptr, latest);
-    Tried tried{here.residual, {}};
+    Tried tried = Compared(here.residual);
     if (here.usable) *latest = std::move(here);
+    return tried;
+  }
+
+  Tried Compared(const Eigen::VectorXd& residual) const {
+    Tried tried{residual, {}};
     if (tried.residual.size() == misfit_.residual.size() && own_.size() == tried.residual.size() &&
         tried.residual != own_)
       tried.difference = WhitenedRows(tried.residual - own_, misfit_, 0, fitted_only_);
@@ -205,22 +227,31 @@ class ChangeSearch {
   const LinearGaussianModel model_;
 };
 
+// Whether two residuals of the study's mesh are those of one motion, but for rounding.
+bool IsSame(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
+  constexpr double kRounding = 1e-9;
+  return one.size() == other.size() && (one - other).norm() <= kRounding * one.norm();
+}
+
 }  // namespace
 
 std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only,
-                                       const Eigen::VectorXd& limit) {
+                                       const OtherMesh* known) {
   const PredictionStudy study = WithLongSteps(problem);
   const TetMesh& own = problem.body()->mesh;
-  const double ratio = RatioFor(problem);
+  const double ratio = RatioFor(problem, misfit);
   const auto other = WithOtherElements(study, own, ratio);
   if (!other) return std::nullopt;
   OtherMesh mesh{other->ratio, Eigen::VectorXd::Zero(values.size()), {}, {}};
   mesh.own = CalibrationProblem(study, own).Linearise(values, false, {}, nullptr, &misfit).residual;
   const ChangeSearch search(problem, values, misfit, mesh.own, fitted_only);
-  if (limit.size() > 0) {
-    mesh.change = ChangeTo(limit, problem.parameters(), values) / mesh.ToLimit();
+  bool is_simulated = false;
+  if (known != nullptr) {
+    mesh.change = known->ToRatio(mesh.ratio) * known->change;
+    is_simulated = known->ratio == mesh.ratio && IsSame(known->own, mesh.own);
+    if (is_simulated) mesh.change = known->change;
   } else if (mesh.ratio > kScoutBelow * kScoutRatio) {
     // Most of the way is found with elements that cost little.
     const auto scout = WithOtherElements(study, own, kScoutRatio);
@@ -229,11 +260,37 @@ std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
       if (found.residual.size() > 0) mesh.change = found.change / mesh.ToRatio(scout->ratio);
     }
   }
-  ChangeSearch::Found found = search.Run(*other->problem, mesh.change);
+  ChangeSearch::Found found =
+      search.Run(*other->problem, mesh.change, is_simulated ? known->other : Eigen::VectorXd());
   if (found.residual.size() == 0) return std::nullopt;
   mesh.change = std::move(found.change);
   mesh.other = std::move(found.residual);
   return mesh;
+}
+
+void SaveOtherMesh(const OtherMesh& mesh, const std::filesystem::path& folder) {
+  const json description = {
+      {"ratio", mesh.ratio},
+      {"change", std::vector<double>(mesh.change.begin(), mesh.change.end())}};
+  WriteFileAtomically(folder / kDescription, description.dump(2) + "\n");
+  Eigen::MatrixXd residuals(mesh.own.size(), 2);
+  residuals << mesh.own, mesh.other;
+  WriteNpy(folder / kResiduals, residuals);
+}
+
+std::optional<OtherMesh> ReadOtherMesh(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / kDescription;
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  const Eigen::MatrixXd residuals = ReadNpyMatrix(folder / kResiduals);
+  if (residuals.cols() != 2)
+    throw InputError((folder / kResiduals).string() + ": must have two columns");
+  return ReadJsonFile(file, [&](const json& description) {
+    const std::vector<double> change = description.at("change");
+    return OtherMesh{
+        description.at("ratio"),
+        Eigen::Map<const Eigen::VectorXd>(change.data(), static_cast<Eigen::Index>(change.size())),
+        residuals.col(0), residuals.col(1)};
+  });
 }
 
 Eigen::VectorXd ResidualAtRatio(const CalibrationProblem& problem, const Eigen::VectorXd& values,

@@ -3,6 +3,7 @@
 #define LACUNA_CALIBRATION_MESH_LIMIT_H_
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -42,13 +43,19 @@ struct OtherMesh {
 };
 
 // `misfit` is that at `values`, with its Jacobian. `fitted_only`: compare the motions in the fitted
-// frames alone. `limit`: KnownErrors::at_mesh_limit of an earlier fit, near which the change is
-// sought; empty: there is none. Returns nothing where another mesh cannot be made
+// frames alone. `known`: what was found at these values or near them, perhaps with other frames
+// compared; where the study's mesh moves as it did then, the other one is not simulated again at
+// that change. Null: nothing is known. Returns nothing where another mesh cannot be made
 // (calibration/other_elements.h) or cannot be simulated. Throws Interrupted.
 std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only,
-                                       const Eigen::VectorXd& limit = {});
+                                       const OtherMesh* known = nullptr);
+
+// Writes other_mesh.json and other_mesh.npy into a folder, and reads them; nothing where the folder
+// has no such files. Both throw InputError naming the file.
+void SaveOtherMesh(const OtherMesh& mesh, const std::filesystem::path& folder);
+std::optional<OtherMesh> ReadOtherMesh(const std::filesystem::path& folder);
 
 // The residual with elements whose volume is smaller by `ratio`, with the longer steps and the
 // change of the parameters that belongs to that ratio. Empty where the shape cannot be meshed so or

@@ -9,9 +9,13 @@
 namespace lacuna {
 
 // The change of the rows of `misfit`, m, if the object were larger along x, y and z (one column
-// each) by PredictionStudy::size_deviation; a gripped face stays in its grip. Computed by finite
-// differences of predictions with `values`. Empty if one of them fails or if the deviation is 0.
-// Throws Interrupted.
+// each) by PredictionStudy::size_deviation. Computed by finite differences of predictions with
+// `values`. Without a column if one of them fails or if the deviation is 0. Throws Interrupted.
+//
+// All regions keep their nodes (calibration/listed_nodes.h), so that a grip holds what it held. In
+// each recording the object is stretched about the centroid of its first grip, which therefore
+// stays where it is; the nodes of other grips are displaced with the object. Without a grip, it is
+// stretched about its own centroid.
 Eigen::MatrixXd ChangesBySize(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                               const LinearisedMisfit& misfit);
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
+#include "calibration/side_by_side.h"
 
 namespace lacuna {
 namespace {
@@ -32,7 +32,8 @@ std::optional<StepErrors> FindStepErrors(const CalibrationProblem& problem,
   };
   const Eigen::VectorXd& whole = misfit.residual;
   Eigen::VectorXd half, quarter;
-  ParallelFor(2, 1, [&](int64_t k) { k == 0 ? quarter = with_steps(4) : half = with_steps(2); });
+  ForEachStudy(problem, 2,
+               [&](int64_t k) { k == 0 ? quarter = with_steps(4) : half = with_steps(2); });
   if (half.size() != whole.size() || quarter.size() != half.size()) return std::nullopt;
   const double power = ChangePerHalving(problem.study().scheme, whole, half, quarter);
   return StepErrors{quarter + (quarter - half) / (power - 1) - whole,

@@ -86,8 +86,8 @@ class BoundedDescent {
 
   DescentEnd Run() {
     // A search without a residual is at its minimum.
-    const double least_gain =
-        options_.cost_tolerance / static_cast<double>(std::max<Eigen::Index>(1, residuals_));
+    const double least_gain = options_.cost_tolerance / static_cast<double>(std::max<Eigen::Index>(
+                                                            1, end_.prediction.Observed()));
     int rejected = 0;           // consecutive steps
     std::string failed_beside;  // why the last of them could not be predicted
     double radius = kInfinity;

@@ -10,6 +10,8 @@
 #include <limits>
 #include <string>
 
+#include "core/bounds.h"
+
 namespace lacuna {
 
 struct CalibratedParameter {
@@ -28,6 +30,21 @@ struct CalibratedParameter {
   // verdict kFlat compares the uncertainty with it.
   double typical = 1;
 };
+
+// Limits a parameter, whose start must be set, to [min, max] within the bounds of its card. A fit
+// may reach a bound that lies inside an open one of the card. A bound very close to the open one,
+// such as `lacuna add` writes, does not count: the model nearly degenerates there too.
+inline void SetBounds(double min, double max, const Bounds& of_card,
+                      CalibratedParameter* parameter) {
+  constexpr double kClose = 1e-3;  // of the distance of the start; larger: more bounds stay open
+  const auto is_close = [&](double bound, double open) {
+    return std::abs(bound - open) <= kClose * std::abs(parameter->start - open);
+  };
+  parameter->min = min;
+  parameter->max = max;
+  parameter->open_min = of_card.open_min && is_close(min, of_card.min);
+  parameter->open_max = of_card.open_max && is_close(max, of_card.max);
+}
 
 // φ of a value θ. On a logarithmic scale the value must be positive.
 inline double ToFree(const CalibratedParameter& parameter, double value) {

@@ -140,9 +140,9 @@ void CountModelErrors(const CalibratedParameter& parameter, double centre, doubl
   SetInterval(parameter, centre, std::hypot(estimate->posterior_deviation, deviation), estimate);
 }
 
-double RootMeanSquare(const Eigen::VectorXd& residual) {
-  return residual.size() > 0 ? residual.norm() / std::sqrt(static_cast<double>(residual.size()))
-                             : 0;
+double RootMeanSquare(const Prediction& prediction) {
+  const Eigen::Index observed = prediction.Observed();
+  return observed > 0 ? prediction.residual.norm() / std::sqrt(static_cast<double>(observed)) : 0;
 }
 
 Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
@@ -165,7 +165,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     calibration.message = "no prediction at the start: " + last.message;
     return calibration;
   }
-  calibration.start_rms = RootMeanSquare(last.residual);
+  calibration.start_rms = RootMeanSquare(last);
   calibration.cost = 0.5 * last.residual.squaredNorm();
   calibration.usable = true;
   if (count > 0) {
@@ -179,7 +179,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     calibration.is_out_of_budget = end.is_out_of_budget;
     last = std::move(end.prediction);
   }
-  calibration.rms = RootMeanSquare(last.residual);
+  calibration.rms = RootMeanSquare(last);
   calibration.inflation = std::max(1.0, calibration.rms);
   calibration.memory = MemoryOf(last);
   if (count > 0) {

@@ -33,7 +33,7 @@ struct Calibration {
   Eigen::VectorXd parameters;                // θ, SI
   std::vector<ParameterEstimate> estimates;  // empty if the first prediction failed
   Eigen::MatrixXd covariance;     // covariance of φ with prior, `inflation` and `memory`
-  double start_rms = 0, rms = 0;  // √(‖r‖²/n) at the start and at the solution
+  double start_rms = 0, rms = 0;  // RootMeanSquare() at the start and at the solution
   double cost = 0;  // ½ ‖r‖² and half of the squares of the priors at the solution
   // √v = max(1, rms). All variances of the noise are multiplied by v, because a model that misses
   // the data by more than the noise determines its parameters less well than the noise would allow.
@@ -58,8 +58,8 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
 void CountModelErrors(const CalibratedParameter& parameter, double centre, double deviation,
                       ParameterEstimate* estimate);
 
-// √(‖r‖²/n); 0 for an empty residual.
-double RootMeanSquare(const Eigen::VectorXd& residual);
+// √(‖r‖²/n), where n is the number of rows that were observed; 0 if there are none.
+double RootMeanSquare(const Prediction& prediction);
 
 }  // namespace lacuna
 

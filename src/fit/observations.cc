@@ -35,10 +35,12 @@ Observations Keep(const Observations& all, const std::vector<Eigen::Index>& kept
   return observations;
 }
 
-// Sets the mesh nodes and the weights of points that are given on triangles of the boundary.
+// Sets the mesh nodes and the weights of points that are given on triangles of the boundary. Those
+// of points without a triangle are left as they are.
 void AttachToTriangles(const BoundarySurface& boundary, const SurfaceHits& hits,
                        Observations* observations) {
   for (Eigen::Index j = 0; j < hits.triangle.size(); ++j) {
+    if (hits.triangle[j] < 0) continue;
     const Eigen::Vector3i triangle = boundary.surface.triangles.col(hits.triangle[j]);
     for (int a = 0; a < 3; ++a) observations->node(a, j) = boundary.node[triangle[a]];
     observations->weight.col(j) = hits.barycentric.col(j);
@@ -138,7 +140,7 @@ Observations ObserveMarkers(const BoundarySurface& boundary, const SurfaceHits& 
   all.tangent_sigma.setConstant(sigma);
   std::vector<Eigen::Index> kept;
   for (Eigen::Index j = 0; j < target.cols(); ++j) {
-    if (target.col(j).allFinite()) kept.push_back(j);
+    if (at_rest.triangle[j] >= 0 && target.col(j).allFinite()) kept.push_back(j);
   }
   return Keep(all, kept);
 }

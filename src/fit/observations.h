@@ -53,8 +53,9 @@ Observations ObserveVertices(const BoundarySurface& boundary, const Eigen::Matri
                              const Eigen::VectorXd& tangent_sigma);
 
 // Observes markers, points attached to the boundary of the body at rest, in all directions with
-// standard deviation `sigma`. Markers whose column of `target` contains NaN were not seen and are
-// left out.
+// standard deviation `sigma`. Markers that are attached to no triangle (−1), because their place at
+// rest is not known, and those whose column of `target` contains NaN, because they were not seen,
+// are left out.
 Observations ObserveMarkers(const BoundarySurface& boundary, const SurfaceHits& at_rest,
                             const Eigen::Matrix3Xd& target, double sigma);
 

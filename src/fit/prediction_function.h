@@ -21,6 +21,12 @@ struct Prediction {
   // For each row, the row of the same quantity one frame earlier, or −1 in its first frame. Empty
   // if the rows are not ordered in time.
   std::vector<Eigen::Index> before = {};
+  // The number of rows that stand for something that was not seen or not read. They are 0, so that
+  // the layout of the rows does not depend on the parameters, and are no measurements.
+  Eigen::Index unobserved = 0;
+
+  // The number of measurements.
+  Eigen::Index Observed() const { return residual.size() - unobserved; }
 };
 
 // Must be a function of the parameters θ (SI) alone, and must return the same number of rows for

@@ -12,7 +12,6 @@
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
 #include "effects/plane_contact.h"
-#include "geometry/farthest_first.h"
 #include "geometry/rotation.h"
 
 namespace lacuna {
@@ -152,8 +151,8 @@ void AddMarkers(int count, const TetMesh& mesh, const std::vector<RecordedGrip>&
   if (static_cast<int>(points.size()) < before + count)
     throw InputError(fmt::format("more_markers: the mesh has room for {} more only",
                                  static_cast<int>(points.size()) - before));
-  // The markers that are there come first: among themselves they are at distance 0 of what is
-  // chosen, and a new one counts its distance to all of them.
+  // Squared distance of each point to the nearest marker, existing (these come first) or chosen; 0
+  // for a marker itself.
   const auto distance = [&](int a, int b) { return (points[a] - points[b]).squaredNorm(); };
   std::vector<double> away(points.size(), std::numeric_limits<double>::infinity());
   const auto take = [&](int taken) {
@@ -203,6 +202,12 @@ std::shared_ptr<const Effect> AttachedWeight(const Protocol::Weight& weight,
   if (box.exteriorDistance(weight.place) > weight.radius)
     throw InputError(fmt::format("weight: its place is {:.3g} mm away from the object",
                                  1e3 * box.exteriorDistance(weight.place)));
+  for (const ModelParameter& parameter : study.fitted)
+    if (&study.effects[parameter.places.front().effect]->Card() == &GravityCard())
+      throw InputError(
+          fmt::format("weight: that of a mass in one recording does not follow {}, "
+                      "which is fitted",
+                      parameter.prior.name));
   const Eigen::Vector3d gravity = GravityOf(study.effects).value_or(Eigen::Vector3d::Zero());
   return MakeAttachedMass(weight.mass, weight.place, weight.radius, gravity);
 }

@@ -11,12 +11,14 @@
 #include <set>
 #include <utility>
 
+#include "analysis/linear_evidence.h"
 #include "calibration/linear_misfit.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "diagnosis/adequacy.h"
 #include "diagnosis/candidates.h"
 #include "diagnosis/decision_rules.h"
+#include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/projected_hypotheses.h"
 #include "fit/calibration.h"
@@ -141,44 +143,29 @@ Influence Planner::InfluenceOf(const Protocol& protocol) const {
                                    : Eigen::Vector3d(Eigen::Vector3d::Zero());
   influence.picture = PictureOf(planned, run_.fitted.mesh, hold);
 
-  std::vector<MisfitDirection> directions;
-  for (const WeighedHypothesis& hypothesis : now_.hypotheses) {
-    const CandidateEffect& candidate = Find(hypothesis);
-    for (const int parameter : candidate.amplitude)
-      directions.push_back({.perturbation = {.effect = candidate.effect, .parameter = parameter}});
-  }
-  const Eigen::Index of_effects = static_cast<Eigen::Index>(directions.size());
-  const GripMotions grips = MakeGripMotions(problem);
-  directions.insert(directions.end(), grips.directions.begin(), grips.directions.end());
-  LinearisedMisfit misfit = problem.Linearise(values, true, directions);
+  std::vector<CandidateEffect> effects;
+  for (const WeighedHypothesis& hypothesis : now_.hypotheses) effects.push_back(Find(hypothesis));
+  const LinearisedWithGrips linearised = LineariseWithGrips(problem, values, DirectionsOf(effects));
+  const LinearisedMisfit& misfit = linearised.misfit;
   if (!misfit.usable) {
     influence.message = misfit.message;
     return influence;
   }
-  const Eigen::Index known = static_cast<Eigen::Index>(problem.parameters().size());
   const Eigen::Index of_model = static_cast<Eigen::Index>(study.fitted.size());
-  const Eigen::MatrixXd grip_columns =
-      misfit.jacobian.rightCols(misfit.jacobian.cols() - known - of_effects);
-  Eigen::MatrixXd own = misfit.jacobian.middleCols(of_model, known - of_model);
+  const Eigen::MatrixXd grip_columns = linearised.OfGrips();
+  Eigen::MatrixXd own = misfit.jacobian.middleCols(of_model, linearised.parameters - of_model);
   std::vector<LinearPrior> own_priors = PriorsAbout(problem.parameters(), values);
   own_priors.erase(own_priors.begin(), own_priors.begin() + of_model);
-  const auto add_own = [&](const NuisanceCandidate& nuisance) {
-    const Eigen::Index before = own.cols();
-    own.conservativeResize(Eigen::NoChange, before + nuisance.columns.cols());
-    own.rightCols(nuisance.columns.cols()) = nuisance.columns;
-    own_priors.insert(own_priors.end(), nuisance.priors.begin(), nuisance.priors.end());
-  };
   for (const NuisanceCandidate& nuisance :
-       NuisancesOfEveryModel({problem, values, misfit, grips, grip_columns}))
-    add_own(nuisance);
+       NuisancesOfEveryModel({problem, values, misfit, linearised.grips, grip_columns}))
+    AppendColumns(nuisance.columns, nuisance.priors, &own, &own_priors);
   for (LinearPrior& prior : own_priors) prior = {0, prior.deviation, false};
 
   const auto whiten = [&](const Eigen::MatrixXd& columns) {
     return WhitenedRows(columns, misfit, run_.diagnosis.noise.correlation_time, false);
   };
   influence.columns = {whiten(misfit.jacobian.leftCols(of_model)), whiten(own),
-                       std::move(own_priors),
-                       whiten(misfit.jacobian.middleCols(known, of_effects))};
+                       std::move(own_priors), whiten(linearised.OfDirections())};
   return influence;
 }
 

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "analysis/residual_statistics.h"
-#include "effects/catalogue.h"
+#include "experiment/model_reader.h"
 #include "experiment/tracked_points.h"
 
 namespace lacuna {
@@ -27,16 +28,22 @@ Hold ReadHold(const Config& config, const Recording& recording) {
   Hold hold{ReadRegion(config.Child("region"), recording.data.folder, "hold"),
             config.Quantity("release", kTime, kAnyValue)};
   if (config.Has("force")) hold.force = config.Vector("force", kForce);
-  if (hold.release > recording.times.back()) {
-    config.Fail("release", fmt::format("lies after the recording's last frame, at {:g} s",
-                                       recording.times.back()));
-  }
-  if (hold.release < recording.times.front()) {
-    config.Fail("release", fmt::format("lies before the recording's first frame, at {:g} s: no "
-                                       "frame shows the object while it is held",
-                                       recording.times.front()));
-  }
   return hold;
+}
+
+// Requires that the object is held in the first of the frames that are used, and not after the
+// last.
+void RequireReleaseWithinFrames(const Config& config, const PredictedRecording& item) {
+  const double first = item.recording.times[item.frames.front()];
+  const double last = item.recording.times[item.frames.back()];
+  if (item.hold->release > last)
+    config.Fail("release", fmt::format("lies after the last frame that is used, at {:g} s: the "
+                                       "object is never released",
+                                       last));
+  if (item.hold->release < first)
+    config.Fail("release", fmt::format("lies before the first frame that is used, at {:g} s: no "
+                                       "frame shows the object while it is held",
+                                       first));
 }
 
 // The largest displacement, m, of a marker that is seen in both frames.
@@ -141,7 +148,7 @@ void CheckReactions(const Config& config, PredictedRecording* item) {
 
 }  // namespace
 
-PredictedRecording ReadRecordingEntry(const Config& config, const Effect* material,
+PredictedRecording ReadRecordingEntry(const Config& config, const EffectList& of_study,
                                       const ScanSettings& scan, TimeScheme scheme,
                                       bool tells_the_shape) {
   PredictedRecording item;
@@ -158,13 +165,13 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
     item.shift_deviation = registration->Quantity("shift_deviation", kLength, kPositive);
     item.turn_deviation = registration->Quantity("turn_deviation", kAngle, kPositive);
   }
-  if (const auto hold = config.OptionalChild("hold")) {
+  const std::optional<Config> hold = config.OptionalChild("hold");
+  if (hold) {
     item.hold = ReadHold(*hold, item.recording);
     AddFileOf(item.hold->region, &item.recording);
   }
   item.simulated_cells = ReadSimulatedCells(config, item.recording.object.reactions);
-  for (const Config& effect : config.Items("effects"))
-    item.effects.push_back(MakeEffect(effect, material));
+  item.effects = ReadEffectsBeside(of_study, config);
 
   // One equilibrium can be fitted; a motion needs two steps.
   const size_t fewest = scheme == TimeScheme::kQuasiStatic ? 1 : 3;
@@ -173,6 +180,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
                 fmt::format("{} frames lie between {:g} s and {:g} s; at least {} are needed",
                             item.frames.size(), from, to, fewest));
   }
+  if (hold) RequireReleaseWithinFrames(*hold, item);
   if (item.fitted && item.fit_until < item.recording.times[item.frames[fewest - 1]])
     config.Fail("fit_until", fmt::format("leaves fewer than {} frames to fit", fewest));
   if (HasTrackedPoints(item.recording)) ConvertTrackedPointsToMarkers(item.frames, &item.recording);

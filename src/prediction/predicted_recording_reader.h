@@ -4,16 +4,17 @@
 
 #include "core/config.h"
 #include "experiment/scan_settings.h"
-#include "fem/effect.h"
+#include "fem/model.h"
 #include "fem/step_equation.h"
 #include "prediction/prediction_study.h"
 
 namespace lacuna {
 
 // Loads the recording that the entry names and checks that a prediction can be compared with it.
-// `tells_the_shape` is true for the first recording of the study, whose reference shape is meshed.
-// Throws InputError with the position of the entry's key.
-PredictedRecording ReadRecordingEntry(const Config& config, const Effect* material,
+// `of_study`: the effects that act in all recordings, the material first. `tells_the_shape` is true
+// for the first recording of the study, whose reference shape is meshed. Throws InputError with the
+// position of the entry's key.
+PredictedRecording ReadRecordingEntry(const Config& config, const EffectList& of_study,
                                       const ScanSettings& scan, TimeScheme scheme,
                                       bool tells_the_shape);
 

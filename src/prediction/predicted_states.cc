@@ -48,7 +48,7 @@ PredictedStates PredictStates(const RecordingModel& recording, const Eigen::Vect
   predicted.registration = recording.Registration(nuisance);
   const std::vector<int>& frames = recording.item().frames;
   const PredictionOptions options = recording.Options(nuisance);
-  EffectMemory memory(recording.model());
+  EffectMemory memory(recording.model(), options.step.scheme);
   const std::vector<int> chosen = EvenlySpread(static_cast<int>(frames.size()), most);
   // Internal variables are followed through the start of the motion and all frames; without any,
   // the frames in between need not be visited.

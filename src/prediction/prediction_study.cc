@@ -6,10 +6,43 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
+#include "effects/gravity.h"
 #include "effects/uniform_density.h"
 
 namespace lacuna {
+namespace {
+
+// Whether an effect may take a value that the user omits from the material: parameters without a
+// default (ReadParameters in effects/catalogue.h).
+bool MayFollowMaterial(const ParameterCard& card) { return std::isnan(card.default_value); }
+
+// Sets the bounds to those of the card. The parameter must stay strictly inside an open bound: the
+// margin is a part of the distance of its start, however small that is.
+void SetBoundsOfCard(const Bounds& card, CalibratedParameter* prior) {
+  constexpr double kMargin = 1e-6;
+  SetBounds(card.open_min ? card.min + kMargin * (prior->start - card.min) : card.min,
+            card.open_max ? card.max - kMargin * (card.max - prior->start) : card.max, card, prior);
+}
+
+// An added mass weighs with the gravity of the model (effects/gravity.h), also where that is
+// fitted.
+void ShareGravity(const EffectList& effects, std::vector<ModelParameter>* parameters) {
+  const std::optional<Eigen::Vector3d> gravity = GravityOf(effects);
+  if (!gravity) return;
+  for (size_t at = 0; at < effects.size(); ++at) {
+    const std::optional<Eigen::Vector3d> setting = GravitySettingOf(*effects[at]);
+    if (!setting || !IsSameGravity(*setting, *gravity)) continue;
+    for (ModelParameter& parameter : *parameters) {
+      const auto [effect, axis] = parameter.places.front();
+      if (&effects[effect]->Card() == &GravityCard())
+        parameter.places.push_back({at, GravitySettingOn(effects[at]->Card()) + axis});
+    }
+  }
+}
+
+}  // namespace
 
 std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
   std::vector<ModelParameter> parameters;
@@ -23,16 +56,17 @@ std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
     for (size_t k = 0; k < card.parameters.size(); ++k) {
       const ParameterCard& entry = card.parameters[k];
       const double value = values[static_cast<Eigen::Index>(k)];
-      if (entry.setting) continue;
-      const auto shared = std::find_if(
-          parameters.begin(), parameters.begin() + static_cast<std::ptrdiff_t>(of_material),
-          [&](const ModelParameter& other) {
+      const auto end_of_material =
+          parameters.begin() + static_cast<std::ptrdiff_t>(is_material ? 0 : of_material);
+      const auto shared =
+          std::find_if(parameters.begin(), end_of_material, [&](const ModelParameter& other) {
             return other.prior.name == entry.name && other.prior.start == value;
           });
-      if (!is_material && shared != parameters.begin() + static_cast<std::ptrdiff_t>(of_material)) {
+      if (shared != end_of_material && MayFollowMaterial(entry)) {
         shared->places.push_back({at, static_cast<int>(k)});
         continue;
       }
+      if (entry.setting) continue;
       ModelParameter parameter;
       parameter.places.push_back({at, static_cast<int>(k)});
       parameter.unit = entry.dimension.unit;
@@ -41,12 +75,7 @@ std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
                    : repeat > 1 ? fmt::format("{}#{}.{}", card.type, repeat, entry.name)
                                 : card.type + "." + entry.name;
       prior.start = value;
-      // The parameter must stay strictly inside an open bound.
-      const double margin = 1e-6 * (entry.plausible_max - entry.plausible_min);
-      prior.min = entry.bounds.min + (entry.bounds.open_min ? margin : 0);
-      prior.max = entry.bounds.max - (entry.bounds.open_max ? margin : 0);
-      prior.open_min = entry.bounds.open_min;
-      prior.open_max = entry.bounds.open_max;
+      SetBoundsOfCard(entry.bounds, &prior);
       prior.log_scale = entry.log_scale && value > 0;
       prior.typical = prior.log_scale ? 0.5 * std::log(entry.plausible_max / entry.plausible_min)
                                       : 0.5 * (entry.plausible_max - entry.plausible_min);
@@ -55,6 +84,7 @@ std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
     }
     if (is_material) of_material = parameters.size();
   }
+  ShareGravity(effects, &parameters);
   return parameters;
 }
 

@@ -64,8 +64,9 @@ struct PredictedRecording {
 // A parameter of the model that may be fitted, with its prior.
 struct ModelParameter {
   // An effect that has the parameter, by its index in PredictionStudy::effects, and the parameter's
-  // index on the effect's card. There are several where an effect shares a modulus with the
-  // material.
+  // index on the effect's card. The first is the one that the parameter is named after. There are
+  // several where effects share a parameter of the material or gravity, which may be a setting of
+  // theirs (prediction/setting_derivative.h).
   struct Place {
     size_t effect = 0;
     int index = 0;
@@ -75,7 +76,10 @@ struct ModelParameter {
   CalibratedParameter prior;  // named "young_modulus" (material) or "gravity.acceleration_z"
   std::string unit;           // SI unit
 };
-// All parameters of these effects except settings, with the bounds and priors of their cards.
+// All parameters of these effects except settings, with the bounds and priors of their cards. An
+// effect shares a parameter of the material (the first effect) if it has one of the same name and
+// value whose value it takes from the material where the user omits it, and gravity if it adds mass
+// that has the same gravity.
 std::vector<ModelParameter> ModelParameters(const EffectList& effects);
 // Whether a parameter is the density of the body, which the experiment states beside the effects.
 bool IsDensity(const ModelParameter& parameter, const EffectList& effects);

@@ -46,6 +46,14 @@ void ReadPrior(const Config& item, const ParameterCard& card, CalibratedParamete
   prior->prior_deviation = prior->log_scale ? deviation / prior->prior_mean : deviation;
 }
 
+// Reads `min` and `max`.
+void ReadBounds(const Config& item, const ParameterCard& card, CalibratedParameter* prior) {
+  const double min = item.Quantity("min", card.dimension, card.bounds, prior->min);
+  const double max = item.Quantity("max", card.dimension, card.bounds, prior->max);
+  SetBounds(min, max, card.bounds, prior);
+  if (prior->min > prior->max) item.Fail("min", "is above max");
+}
+
 // Reads `fit: {parameters: [{name: young_modulus, min: 1 kPa}, …]}`. If it is absent, the
 // parameters of the material are fitted.
 std::vector<ModelParameter> ReadFitted(const Config& config, const EffectList& effects) {
@@ -68,9 +76,7 @@ std::vector<ModelParameter> ReadFitted(const Config& config, const EffectList& e
     CalibratedParameter& prior = parameter.prior;
     const auto [effect, index] = parameter.places.front();
     const ParameterCard& card = effects[effect]->Card().parameters[index];
-    prior.min = item.Quantity("min", card.dimension, card.bounds, prior.min);
-    prior.max = item.Quantity("max", card.dimension, card.bounds, prior.max);
-    if (prior.min > prior.max) item.Fail("min", "is above max");
+    ReadBounds(item, card, &prior);
     if (!(prior.min <= prior.start && prior.start <= prior.max))
       item.Fail("name", fmt::format("starts at {:g} {}, outside {:g} to {:g}", prior.start,
                                     parameter.unit, prior.min, prior.max));
@@ -78,6 +84,20 @@ std::vector<ModelParameter> ReadFitted(const Config& config, const EffectList& e
     fitted.push_back(parameter);
   }
   return fitted;
+}
+
+// The weight of a mass in one recording alone does not follow a gravity that is fitted.
+void RequireKnownWeights(const Config& config, const PredictionStudy& study) {
+  for (const ModelParameter& parameter : study.fitted) {
+    if (&study.effects[parameter.places.front().effect]->Card() != &GravityCard()) continue;
+    for (const PredictedRecording& item : study.recordings)
+      for (const auto& effect : item.effects)
+        if (const auto gravity = GravitySettingOf(*effect); gravity && !gravity->isZero(0))
+          config.Fail("fit", fmt::format("{} cannot be fitted: the weight of {} among the effects "
+                                         "of {} would stay the same; list it in the `effects` of "
+                                         "the experiment, or hold gravity fixed",
+                                         parameter.prior.name, effect->Card().type, item.name));
+  }
 }
 
 // Makes the density a parameter of the fit where `density_deviation` is given. Its weight is that
@@ -108,8 +128,9 @@ void AddDensity(const Config& config, PredictionStudy* study) {
   ModelParameter parameter = ModelParameters(study->effects).back();
   CalibratedParameter& prior = parameter.prior;
   prior.name = "density";
-  prior.min = study->density / kLargestFactor;
-  prior.max = study->density * kLargestFactor;
+  const int index = parameter.places.front().index;
+  SetBounds(study->density / kLargestFactor, study->density * kLargestFactor,
+            study->effects.back()->Card().parameters[index].bounds, &prior);
   prior.prior_mean = study->density;
   prior.prior_deviation = prior.typical = study->density_deviation;
   study->fitted.push_back(parameter);
@@ -181,9 +202,8 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.explained_misfit = config.Number("explained_misfit", kNotNegative, study.explained_misfit);
   study.scan = ReadScanSettings(config);
   for (const Config& item : config.Items("recordings")) {
-    PredictedRecording recording =
-        ReadRecordingEntry(item, study.effects.front().get(), study.scan, study.scheme,
-                           /*tells_the_shape=*/study.recordings.empty());
+    PredictedRecording recording = ReadRecordingEntry(item, study.effects, study.scan, study.scheme,
+                                                      /*tells_the_shape=*/study.recordings.empty());
     for (const PredictedRecording& other : study.recordings)
       if (other.name == recording.name)
         item.Fail("name", fmt::format("\"{}\" is already the name of another recording; an entry "
@@ -210,6 +230,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.density = density ? config.Quantity("density", kDensity, kPositive, *density)
                           : config.Quantity("density", kDensity, kPositive);
   study.fitted = ReadFitted(config, study.effects);
+  RequireKnownWeights(config, study);
   AddDensity(config, &study);
   config.RefuseUnknownKeys();
   study.configuration = config.Resolved();

@@ -1,5 +1,6 @@
 #include "prediction/recording_nuisances.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,7 @@ void AppendReadings(const RecordingModel& model, const Misfit& misfit, Predictio
     const Eigen::Index before = prediction->residual.size(), more = reaction.residual.size();
     prediction->residual.conservativeResize(before + more);
     prediction->residual.tail(more) = whitened(reaction.residual);
+    prediction->unobserved += std::count(reaction.count.begin(), reaction.count.end(), 0);
     if (prediction->jacobian.cols() == 0) continue;
     prediction->jacobian.conservativeResize(before + more, Eigen::NoChange);
     prediction->jacobian.bottomRows(more) = whitened(reaction.jacobian);
@@ -64,6 +66,8 @@ Eigen::VectorXd FitRecordingNuisances(const RecordingModel& model, MeasurementEr
       };
       prediction.residual =
           whitened(place_offset ? misfit.ResidualWithout(*place_offset) : misfit.residual);
+      prediction.unobserved =
+          misfit.Components() * std::count(misfit.count.begin(), misfit.count.end(), 0);
       if (kept.empty()) kept = std::move(misfit.observed);
       if (with_jacobian) prediction.jacobian = whitened(misfit.jacobian);
       AppendReadings(model, misfit, &prediction);

@@ -75,7 +75,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   motion.height.resize(markers, count);
   const int last = static_cast<int>(count) - 1;
   const int stride = std::max(1, (last - at_start) / (ReplayedMotion::kMostStates - 2) + 1);
-  EffectMemory memory(model);
+  EffectMemory memory(model, options.step.scheme);
   double time_before = options.start_time;
   motion.summary = Predict(loaded, options, times, {}, [&](int index, const PredictedState& state) {
     const auto keep = [&](int frame, const std::vector<Eigen::VectorXd>& effect_state) {

@@ -113,6 +113,7 @@ json ToJson(const CalibrationRecord& record) {
               {"recordings", recordings},
               {"prior_conflicts", conflicts}};
   if (record.scan_noise > 0) all["scan_noise_m"] = record.scan_noise;
+  if (!record.notes.empty()) all["notes"] = record.notes;
   return all;
 }
 
@@ -122,6 +123,7 @@ CalibrationRecord FromJson(const json& value) {
   record.experiment = value.at("experiment").get<std::string>();
   record.usable = value.at("usable");
   record.message = value.at("message");
+  record.notes = value.value("notes", std::vector<std::string>());
   record.noise = value.at("noise_m");
   record.time_step = value.at("time_step_s");
   record.step_error = NumberOr(value.at("step_error_over_sigma"), kInfinity);

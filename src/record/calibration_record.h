@@ -88,6 +88,9 @@ struct CalibrationRecord {
   bool usable = false;
   // Why it is not usable; of a usable record, that the fit was ended before it had converged.
   std::string message;
+  // What the result does not contain or reach, in sentences without capital and full stop: a time
+  // step that is not short enough, intervals without one of the errors of the model.
+  std::vector<std::string> notes = {};
   // m, the standard deviations that whiten the residuals: of one coordinate of a marker, and of a
   // scanned point along the surface normal. 0 where there are no markers or no scans.
   double noise = 0, scan_noise = 0;

@@ -148,6 +148,9 @@ struct EffectCard {
   // Types of effects that are easily confused with this one. The relation is symmetric and need be
   // stated on one of the two cards only (LookAlikesOf in effects/catalogue.h).
   std::vector<std::string> look_alikes;
+  // Types of effects that a model must not contain beside this one. It need be stated on one of the
+  // two cards only (MayStandBeside in effects/catalogue.h).
+  std::vector<std::string> excludes = {};
   TriedAt tried_at = TriedOnce{};
   TrialDesign trial = {};
   // The length of the vector that makes the size, where nature fixes it (SI); 0: it does not.

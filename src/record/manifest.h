@@ -1,6 +1,9 @@
 // manifest.json: the configuration and the inputs of a run, and its valid results.
 //
-// It does not depend on the computer or the time: the same run gives the same bytes everywhere.
+// It contains neither the time nor anything about the computer: the same run, by the same program
+// and libraries, gives the same bytes on every processor with the same vector instructions. On
+// others registration (registration/gaussian_sums.h) and OpenBLAS round differently, so that the
+// results and their hashes differ.
 #ifndef LACUNA_RECORD_MANIFEST_H_
 #define LACUNA_RECORD_MANIFEST_H_
 

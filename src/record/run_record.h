@@ -27,8 +27,10 @@ struct FrameRecord {
   int frame = 0;
   double time = kNotMeasured;  // s
   // |D| (Transue & Choi 2015, Eq. 1): the sum over the points of the simulated surface of their
-  // distances from the corresponding recorded points; the mean per point, which makes frames with
-  // different numbers of points comparable; and that mean divided by RunRecord::object_size.
+  // distances from the corresponding recorded points or, where tracked points identify themselves,
+  // the sum over those that are seen of their distances from their places on the model; the mean
+  // per point, which makes frames with different numbers of points comparable; and that mean
+  // divided by RunRecord::object_size.
   double residual = kNotMeasured;       // m
   double residual_mean = kNotMeasured;  // m
   double relative_residual = kNotMeasured;
@@ -65,8 +67,8 @@ struct RunRecord {
   std::map<std::string, SolverStatus> stages;  // by name of the stage
   std::map<std::string, double> measures;      // further numbers, SI; the name ends with the unit
   std::vector<std::string> warnings;
-  // The length of the residual displacement of each point of the simulated surface, points ×
-  // frames, m; 0 × 0 if not measured.
+  // The length of the residual displacement of each point of the simulated surface or, where they
+  // identify themselves, of each tracked point: points × frames, m; 0 × 0 if not measured.
   Eigen::MatrixXd point_residuals;
 
   // Whether there are frames, and all frames and stages are usable.

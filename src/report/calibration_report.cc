@@ -193,6 +193,12 @@ struct ConflictSentence {
   }
 };
 
+std::string NotesText(const CalibrationRecord& record) {
+  std::string text;
+  for (const std::string& note : record.notes) text += Wrapped("note: " + note, "  ", "    ");
+  return text;
+}
+
 }  // namespace
 
 std::string DescribePriorConflict(const PriorConflict& conflict) {
@@ -220,7 +226,7 @@ std::string CalibrationSummary(const CalibrationRecord& record) {
   if (!record.prior_conflicts.empty())
     more.push_back(fmt::format("{} conflicts with priors", record.prior_conflicts.size()));
   if (!more.empty()) text += fmt::format("  {}: --verbose lists them\n", fmt::join(more, " and "));
-  return text;
+  return text + NotesText(record);
 }
 
 std::string CalibrationReport(const CalibrationRecord& record) {
@@ -231,7 +237,7 @@ std::string CalibrationReport(const CalibrationRecord& record) {
   for (const PriorConflict& conflict : record.prior_conflicts)
     text += Wrapped("prior conflict: " + DescribePriorConflict(conflict), "  ", "    ");
   for (const std::string& note : record.mesh_notes) text += Wrapped("mesh: " + note, "  ", "    ");
-  return text;
+  return text + NotesText(record);
 }
 
 }  // namespace lacuna

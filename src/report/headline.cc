@@ -312,16 +312,23 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
 std::vector<std::string> ReconstructionHeadline(const RunRecord& record) {
   const auto followed = std::count_if(record.frames.begin(), record.frames.end(),
                                       [](const FrameRecord& frame) { return frame.solver.usable; });
-  const std::string how =
-      followed == 0
-          ? fmt::format("The model could not follow any of {} frames.", record.frames.size())
-          : fmt::format(
-                "With fitted forces the model follows {} of {} frames; its surface points are {} "
-                "from their places in the scans on average, {:.2g} % of the object's size.",
-                followed, record.frames.size(),
-                Millimetres(record.relative_animation_residual * record.object_size),
-                100 * record.relative_animation_residual);
-  return {how,
+  const auto how = [&]() -> std::string {
+    if (followed == 0)
+      return fmt::format("The model could not follow any of {} frames.", record.frames.size());
+    const std::string follows = fmt::format(
+        "With fitted forces the model follows {} of {} frames; ", followed, record.frames.size());
+    if (std::isnan(record.relative_animation_residual))
+      return follows + "how far its points are from their measured places is not known.";
+    return follows +
+           fmt::format(
+               "its points are {} from their measured places on average{}, {:.2g} % of the "
+               "object's size.",
+               Millimetres(record.relative_animation_residual * record.object_size),
+               std::isnan(record.animation_residual) ? " over the frames in which this was measured"
+                                                     : "",
+               100 * record.relative_animation_residual);
+  };
+  return {how(),
           "Forces that are fitted frame by frame let a wrong model follow too, so that this says "
           "nothing about which physics the model lacks."};
 }

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/json_number.h"
 #include "record/csv_table.h"
 #include "record/json_vector.h"

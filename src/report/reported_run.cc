@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/hash.h"
-#include "core/text_file.h"
+#include "core/json_file.h"
 #include "record/ledger.h"
 #include "record/run_directory.h"
 
@@ -48,6 +48,8 @@ ReportedModel OpenModel(const fs::path& folder, const std::string& added,
   model.fit = HashFile(fit);
   model.calibration = ReadCalibrationFile(fit);
   if (model.calibration.usable) model.errors = ErrorsOf(model.calibration);
+  for (const std::string& note : model.calibration.notes)
+    notes->push_back(fmt::format("The fit of {}: {}.", model.name, note));
   const auto leave_out = [&](const char* what, const char* command) {
     notes->push_back(fmt::format(
         "The {} in the folder of {} is of an earlier fit and is not shown; `lacuna {}` makes a new "
@@ -110,14 +112,6 @@ bool OpenLedger(const fs::path& folder, ReportedRun* run) {
 }
 
 }  // namespace
-
-json ReadJsonFile(const fs::path& file) {
-  try {
-    return json::parse(ReadWholeFile(file));
-  } catch (const json::exception& problem) {
-    throw InputError({file.string()}, std::string("is not JSON: ") + problem.what());
-  }
-}
 
 bool IsFittedRun(const fs::path& folder) {
   if (!fs::exists(folder / "manifest.json")) return false;

@@ -43,9 +43,6 @@ ReportedRun OpenReportedRun(const std::filesystem::path& folder);
 // Whether the folder holds a finished run of `lacuna fit`.
 bool IsFittedRun(const std::filesystem::path& folder);
 
-// The parsed file. Throws InputError when it cannot be read or is no JSON.
-nlohmann::json ReadJsonFile(const std::filesystem::path& file);
-
 }  // namespace lacuna
 
 #endif  // LACUNA_REPORT_REPORTED_RUN_H_

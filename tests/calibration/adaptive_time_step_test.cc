@@ -1,8 +1,13 @@
 // A fit that finds out how short its steps must be.
 #include "calibration/adaptive_time_step.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <memory>
+
+#include "fem/cloneable_effect.h"
 #include "support/held_bar.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
@@ -35,6 +40,7 @@ TEST_F(AdaptiveTimeStepOfABar, ShortensTheStepUntilItHardlyMatters) {
   EXPECT_GT(study.time_step, 0.0005);
   EXPECT_GT(fit.step_error, 0);
   EXPECT_LT(fit.step_error, 0.2);
+  EXPECT_EQ(fit.note, "");
 
   PredictionStudy coarse =
       ReadBarStudy(folder_.Path(), {{"motion: {time_step: 1.5 ms}", "motion: {time_step: 5 ms}"}});
@@ -58,6 +64,50 @@ TEST_F(AdaptiveTimeStepOfABar, DoesNotResolveWhatTheModelLacksAnyway) {
   EXPECT_GT(fit.calibration.rms, 100);
   EXPECT_GT(fit.step_error, 1);
   EXPECT_LT(fit.step_error, 0.05 * fit.calibration.rms);
+}
+
+// A force whose direction changes with each halving of the step: no step is short enough.
+class StepDependentForce final : public CloneableEffect<StepDependentForce> {
+ public:
+  static constexpr double kFirstStep = 0.005;  // s
+
+  const EffectCard& Card() const override {
+    static const EffectCard card = [] {
+      EffectCard force;
+      force.type = "step_dependent_force";
+      return force;
+    }();
+    return card;
+  }
+  Eigen::VectorXd Parameters() const override { return {}; }
+  void SetParameters(const Eigen::VectorXd&) {}
+  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
+    constexpr double kAcceleration = 20;  // m/s²
+    if (at.time_step == 0) return;
+    const auto halvings = std::lround(std::log2(kFirstStep / at.time_step));
+    force->reshaped(3, at.body.NodeCount()).row(2) +=
+        (halvings % 2 == 0 ? kAcceleration : -kAcceleration) * at.body.node_mass.transpose();
+  }
+  void AddTangents(const Kinematics&, const TangentWeights&, bool, BlockMatrix*) const override {}
+  void AddParameterDerivative(const Kinematics&, int, Eigen::VectorXd*) const override {}
+};
+
+TEST_F(AdaptiveTimeStepOfABar, SaysWhereNoStepIsShortEnough) {
+  PredictionStudy study = ReadBarStudy(
+      folder_.Path(), {{"motion: {time_step: 1.5 ms}\n", ""},
+                       {"fit: {parameters: [{name: young_modulus}, {name: mass_damping.alpha}]}",
+                        "fit: {parameters: []}"},
+                       {"fit_until: 0.1501 s", "fit_until: 0.0801 s"},
+                       {"    clock_deviation: 10 ms\n", ""}});
+  ASSERT_EQ(study.time_step, StepDependentForce::kFirstStep);
+  study.effects.push_back(std::make_shared<const StepDependentForce>());
+  SilentProgress progress;
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(BarMesh({3, 1, 1}, 1), &study, &progress);
+  ASSERT_FALSE(fit.calibration.estimates.empty()) << fit.calibration.message;
+  EXPECT_GT(fit.step_error, 0.2);
+  EXPECT_THAT(fit.note, testing::HasSubstr("may be too long: half of it would change the fitted "
+                                           "frames by"));
+  EXPECT_THAT(fit.note, testing::HasSubstr("motion.time_step gives a shorter one"));
 }
 
 }  // namespace

@@ -78,6 +78,52 @@ TEST(CalibrationProblem, JacobianAgreesWithDifferences) {
             1e-6 * fitted.jacobian.norm());
 }
 
+// Poisson's ratio of the material, which the branch and the lump share.
+TEST(CalibrationProblem, DifferentiatesBySettingsThatFollowTheMaterial) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const PredictionStudy study = ReadBarStudy(
+      folder.Path(),
+      {{"  - {type: mass_damping, alpha: 1 1/s}\n",
+        "  - {type: viscoelastic_branch, modulus: 100 kPa, relaxation_time: 20 ms}\n"
+        "  - {type: inclusion, young_modulus_difference: 100 kPa, centre: [0.02 m, 0, 0], radius: "
+        "10 mm}\n"},
+       {"{name: young_modulus}, {name: mass_damping.alpha}", "{name: poisson_ratio}"},
+       {"    clock_deviation: 10 ms\n", ""}});
+  ASSERT_EQ(study.fitted.at(0).places.size(), 3u);
+  const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 2));
+  Eigen::VectorXd at = problem.Start();
+  at.tail<3>() << 0.01, 0.03, -0.02;  // the force of the hold
+  constexpr double kStep = 1e-3;
+  const Eigen::VectorXd shift = kStep * Eigen::VectorXd::Unit(at.size(), 0);
+  const LinearisedMisfit here = problem.Linearise(at, true);
+  ASSERT_TRUE(here.usable) << here.message;
+  const Eigen::VectorXd difference = (problem.Linearise(at + shift, false, {}, &here).residual -
+                                      problem.Linearise(at - shift, false, {}, &here).residual) /
+                                     (2 * kStep);
+  // Truncation, and sensitivities that are solved to 1e-4.
+  EXPECT_LT((here.jacobian.col(0) - difference).norm(), 2e-3 * difference.norm());
+}
+
+// Half of the markers are hidden in every second frame.
+TEST(CalibrationProblem, CountsOnlyMarkersThatAreSeen) {
+  const TemporaryFolder folder;
+  std::vector<Eigen::Matrix3Xd> markers = FilmHeldBar({});
+  for (size_t frame = 1; frame < markers.size(); frame += 2)
+    for (Eigen::Index m = 1; m < kMarkers; m += 2)
+      markers[frame].col(m).setConstant(std::numeric_limits<double>::quiet_NaN());
+  WriteBarRecording(folder.Path(), markers);
+  const PredictionStudy study = ReadBarStudy(folder.Path());
+  const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 1));
+  const Prediction prediction = problem.Predict(problem.Start(), false);
+  ASSERT_TRUE(prediction.usable) << prediction.message;
+  constexpr Eigen::Index kFitted = 16;  // frames, 0 to 0.15 s
+  ASSERT_EQ(prediction.residual.size(), 3 * kMarkers * kFitted);
+  EXPECT_EQ(prediction.unobserved, 3 * (kMarkers / 2) * (kFitted / 2));
+  const double seen = 0.75 * static_cast<double>(prediction.residual.size());
+  EXPECT_NEAR(RootMeanSquare(prediction), prediction.residual.norm() / std::sqrt(seen), 1e-12);
+}
+
 // What a prediction that breaks off would have been compared with binds no later one.
 TEST(CalibrationProblem, APredictionThatBreaksOffLeavesNothingBehind) {
   const TemporaryFolder folder;
@@ -327,7 +373,20 @@ TEST(CalibrationProblem, TellsWhatItCannotWorkWith) {
   const Eigen::Matrix3Xd moved = BarMarkerPlaces().array() + 0.002;
   WriteBarRecording(folder.Path(), std::vector<Eigen::Matrix3Xd>(kFrames, moved));
   EXPECT_THAT(MessageOf(ReadBarStudy(folder.Path(), {{"noise: 0.05 mm\n", ""}})),
-              testing::HasSubstr("noise: cannot be estimated"));
+              testing::HasSubstr("noise: cannot be estimated (the markers do not move at all"));
+  const std::string hold =
+      "    hold:\n      region: {half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}\n"
+      "      release: 0.0437 s\n";
+  EXPECT_THAT(
+      MessageOf(ReadBarStudy(folder.Path(),
+                             {{"noise: 0.05 mm\n", ""},
+                              {"motion: {time_step: 1.5 ms}", "motion: {scheme: quasi_static}"},
+                              {hold, "    to: 0.005 s\n"}})),
+      testing::HasSubstr("noise: cannot be estimated (fewer than three frames of markers are "));
+  PredictionStudy not_fitted = ReadBarStudy(folder.Path(), {{"noise: 0.05 mm\n", ""}});
+  not_fitted.recordings[0].fitted = false;  // as beside scans that are fitted
+  EXPECT_THAT(MessageOf(not_fitted),
+              testing::HasSubstr("noise: cannot be estimated (no recording of markers is fitted)"));
   EXPECT_THAT(
       MessageOf(ReadBarStudy(folder.Path(), {{"[0.078 m, 0 m, 0 m]", "[0.1 m, 0 m, 0 m]"}})),
       testing::HasSubstr("hold of bar"));

@@ -1,5 +1,6 @@
 #include "calibration/mesh_limit.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -71,6 +72,21 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   const LinearisedMisfit misfit = coarse.problem.Linearise(values, /*with_jacobian=*/true);
   const auto finer = MakeOtherMesh(coarse.problem, values, misfit, /*fitted_only=*/false);
   ASSERT_TRUE(finer.has_value());
+  // What was found is kept, and where it was kept the finer mesh is not simulated there again.
+  ASSERT_TRUE(errors.other_mesh.has_value());
+  SaveOtherMesh(*errors.other_mesh, folder.Path());
+  auto kept = ReadOtherMesh(folder.Path());
+  ASSERT_TRUE(kept.has_value());
+  EXPECT_EQ(kept->other, errors.other_mesh->other);
+  const auto from_kept =
+      MakeOtherMesh(coarse.problem, values, misfit, /*fitted_only=*/false, &*kept);
+  ASSERT_TRUE(from_kept.has_value());
+  EXPECT_LT((from_kept->other - finer->other).norm(), 0.2 * (finer->other - finer->own).norm());
+  constexpr double kMark = 1e-4;  // m
+  kept->other[0] += kMark;
+  const auto marked = MakeOtherMesh(coarse.problem, values, misfit, /*fitted_only=*/false, &*kept);
+  ASSERT_TRUE(marked.has_value());
+  EXPECT_GT(marked->other[0] - from_kept->other[0], 0.5 * kMark);
   const PredictionStudy study = coarse.problem.WithEstimatedNoise();
   constexpr double kRatio = 12;  // that of a mesh with few elements
   const auto on_finer = WithOtherElements(study, coarse.problem.body()->mesh, kRatio);
@@ -110,6 +126,47 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
     const double expected = std::hypot(without.deviation[k], by_sizes.row(k).norm() / scale);
     EXPECT_NEAR(errors.deviation[k], expected, 1e-6 * expected) << k;
   }
+}
+
+// How far a fit is from the measurements is that of the fitted frames: they do not become closer
+// where others are held out.
+TEST(MeshLimit, AFitFarFromTheMeasurementsIsComparedWithAMeshThatIsLessFine) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const BarFit fit(folder.Path(), "4000 mm^3");
+  const Eigen::VectorXd& values = fit.calibration.parameters;
+  LinearisedMisfit misfit = fit.problem.Linearise(values, /*with_jacobian=*/true);
+  ASSERT_TRUE(misfit.usable) << misfit.message;
+  // 10 of the 26 frames are held out: 3.5 σ in the others would be less than 3 σ if they counted.
+  constexpr double kFar = 3.5;
+  misfit.residual *= kFar / RmsOverSigma(misfit.residual, misfit, /*fitted_only=*/true);
+  const double fitted = WhitenedRows(misfit.residual, misfit, 0, true).norm();
+  ASSERT_LT(fitted, kFarFromTruth * std::sqrt(static_cast<double>(ObservedRows(misfit))));
+  const auto other = MakeOtherMesh(fit.problem, values, misfit, /*fitted_only=*/true);
+  ASSERT_TRUE(other.has_value());
+  const PredictionStudy study = fit.problem.WithEstimatedNoise();
+  const auto expected = WithOtherElements(study, fit.problem.body()->mesh, 4);
+  ASSERT_TRUE(expected.has_value());
+  EXPECT_EQ(other->ratio, expected->ratio);
+}
+
+// A model that removes all mass somewhere cannot be predicted.
+TEST(KnownErrors, SayThatTheyCouldNotBeComputed) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const PredictionStudy study = ReadBarStudy(
+      folder.Path(), {{"  - {type: mass_damping, alpha: 1 1/s}",
+                       "  - {type: attached_mass, mass: 1 g, centre: [0.08 m, 0 m, 0 m]}"},
+                      {"mass_damping.alpha", "attached_mass.mass"}});
+  const CalibrationProblem problem(study, MakeReferenceBody(study).mesh);
+  ASSERT_EQ(problem.parameters()[1].name, "attached_mass.mass");
+  Eigen::VectorXd values = problem.Start();
+  values[1] = -1;  // kg
+  const KnownErrors errors = FindKnownErrors(problem, values);
+  EXPECT_EQ(errors.at_limit, values);
+  EXPECT_EQ(errors.at_mesh_limit.size(), 0);
+  ASSERT_EQ(errors.notes.size(), 1u);
+  EXPECT_THAT(errors.notes[0], testing::HasSubstr("attached_mass with a mass of -1 kg removes"));
 }
 
 // Richardson's extrapolation from a coarser mesh, which a study of many elements uses.

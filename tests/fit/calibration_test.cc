@@ -163,7 +163,7 @@ TEST(Calibration, IsNotTrappedAtABound) {
     std::normal_distribution<double> noise(0, 0.001);
     Eigen::VectorXd measured = swing(truth);
     for (double& value : measured) value += noise(random);
-    const double best = RootMeanSquare((swing(truth) - measured) / 0.001);
+    const double best = RootMeanSquare({true, "", (swing(truth) - measured) / 0.001, {}});
     const auto predict = [&](const Eigen::VectorXd& at, bool) {
       Prediction prediction{true, "", (swing(at) - measured) / 0.001, {}};
       prediction.jacobian.resize(times.size(), 3);
@@ -230,6 +230,30 @@ TEST(Calibration, WidensItsIntervalsIfTheModelDoesNotFit) {
   EXPECT_GT(poor.inflation, 5);
   EXPECT_NEAR(poor.estimates[1].posterior_deviation / good.estimates[1].posterior_deviation,
               poor.inflation / good.inflation, 0.3 * poor.inflation);
+}
+
+// A scan that sees half of the patches: the rows of the others are 0.
+TEST(Calibration, CountsOnlyTheRowsThatWereObserved) {
+  constexpr Eigen::Index kObserved = 100;
+  constexpr double kMisfit = 3;
+  const auto fit = [](Eigen::Index unobserved) {
+    return Calibrate({{.name = "a", .start = 1}}, [=](const Eigen::VectorXd& at, bool) {
+      const Eigen::Index rows = kObserved + unobserved;
+      Prediction prediction{true, "", Eigen::VectorXd::Zero(rows), Eigen::MatrixXd::Zero(rows, 1)};
+      for (Eigen::Index row = 0; row < kObserved; ++row)
+        prediction.residual[row] = at[0] + (row % 2 == 0 ? kMisfit : -kMisfit);
+      prediction.jacobian.topRows(kObserved).setOnes();
+      prediction.unobserved = unobserved;
+      return prediction;
+    });
+  };
+  const Calibration all = fit(0), half = fit(kObserved);
+  ASSERT_TRUE(all.usable && half.usable) << all.message << half.message;
+  EXPECT_NEAR(all.rms, kMisfit, 1e-9);
+  EXPECT_NEAR(half.rms, all.rms, 1e-9);
+  EXPECT_NEAR(half.start_rms, std::hypot(1, kMisfit), 1e-9);
+  EXPECT_NEAR(half.inflation, kMisfit, 1e-9);
+  EXPECT_NEAR(half.estimates[0].deviation, all.estimates[0].deviation, 1e-9);
 }
 
 TEST(Calibration, AnIntervalIsCentredWhereKnownErrorsPutIt) {

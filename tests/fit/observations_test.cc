@@ -51,5 +51,18 @@ TEST(Observations, AnUnseenMarkerObservesNothing) {
   EXPECT_EQ(seen.target.col(0), places.col(1));
 }
 
+TEST(Observations, AMarkerWhosePlaceAtRestIsUnknownObservesNothing) {
+  const Cube cube;
+  Eigen::Matrix3Xd places(3, 2);
+  places << 0.2, 0.7, 0.2, 0.1, 1, 1;
+  const Eigen::Matrix3Xd target = places;
+  places.col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+  const SurfaceHits at_rest = SurfaceSearch(cube.boundary.surface).Nearest(places);
+  ASSERT_EQ(at_rest.triangle[0], -1);
+  const Observations seen = ObserveMarkers(cube.boundary, at_rest, target, 0.01);
+  ASSERT_EQ(seen.Count(), 1);
+  EXPECT_EQ(seen.target.col(0), target.col(1));
+}
+
 }  // namespace
 }  // namespace lacuna

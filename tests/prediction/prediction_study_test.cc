@@ -1,6 +1,7 @@
 // What a user gets wrong in a prediction study, and what the program says.
 #include "prediction/prediction_study.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 #include "effects/gravity.h"
 #include "prediction/prediction_study_reader.h"
 #include "prediction/recorded_motion.h"
+#include "record/effect_card.h"
 #include "support/held_bar.h"
 #include "support/temporary_folder.h"
 
@@ -88,8 +90,8 @@ TEST_F(ReadingAPredictionStudy, TakesWhatIsThere) {
   EXPECT_EQ(study.fitted[1].prior.name, "mass_damping.alpha");
   const PredictionStudy some = ReadBarStudy(
       folder_.Path(),
-      {{"    fit_until", "    from: 0.05 s\n    to: 0.2 s\n    every: 5\n    fit_until"}});
-  EXPECT_THAT(some.recordings[0].frames, ElementsAre(5, 10, 15, 20));
+      {{"    fit_until", "    from: 0.04 s\n    to: 0.2 s\n    every: 5\n    fit_until"}});
+  EXPECT_THAT(some.recordings[0].frames, ElementsAre(4, 9, 14, 19));
 }
 
 TEST_F(ReadingAPredictionStudy, FitsTheMaterialWhenItIsNotTold) {
@@ -113,6 +115,47 @@ TEST_F(ReadingAPredictionStudy, SharesTheMaterialsParameters) {
   EXPECT_EQ(changed[0]->Parameters()[0], 123456);
   EXPECT_EQ(changed[2]->Parameters()[1], 123456);
   EXPECT_EQ(study.effects[0]->Parameters()[0], before) << "an effect does not change";
+}
+
+// So does a setting that is omitted; one with a value of its own keeps it.
+TEST_F(ReadingAPredictionStudy, SharesSettingsThatFollowTheMaterial) {
+  const auto fitted = [&](const std::string& ratio) {
+    return ReadBarStudy(folder_.Path(),
+                        {{"  - {type: mass_damping, alpha: 1 1/s}\n",
+                          "  - {type: mass_damping, alpha: 1 1/s}\n  - {type: viscoelastic_branch, "
+                          "modulus: 20 kPa, relaxation_time: 20 ms" +
+                              ratio + "}\n"},
+                         {"{name: young_modulus}", "{name: poisson_ratio}"}});
+  };
+  const auto ratio_with = [](const PredictionStudy& study, double ratio) {
+    const EffectList changed = WithValues(study.effects, study.fitted, Eigen::Vector2d(ratio, 1));
+    const Effect& branch = *changed.back();
+    return branch.Parameters()[ParameterIndex(branch.Card(), "poisson_ratio")];
+  };
+  const PredictionStudy follows = fitted("");
+  ASSERT_EQ(follows.fitted[0].places.size(), 2u);
+  EXPECT_EQ(ratio_with(follows, 0.3), 0.3);
+  const PredictionStudy own = fitted(", poisson_ratio: 0.2");
+  EXPECT_EQ(own.fitted[0].places.size(), 1u);
+  EXPECT_EQ(ratio_with(own, 0.3), 0.2);
+  for (const ModelParameter& parameter : ModelParameters(own.effects))
+    EXPECT_NE(parameter.prior.name, "viscoelastic_branch.poisson_ratio") << "it is a setting";
+}
+
+// The weight of a mass follows a gravity that is fitted.
+TEST_F(ReadingAPredictionStudy, SharesGravityWithMassesThatHaveIt) {
+  const PredictionStudy study =
+      ReadBarStudy(folder_.Path(), {{"  - {type: mass_damping, alpha: 1 1/s}\n",
+                                     "  - {type: mass_damping, alpha: 1 1/s}\n  - {type: "
+                                     "attached_mass, mass: 1 g, centre: [0.08 m, 0 m, 0 m], "
+                                     "gravity: [0, 0, -9.80665 m/s^2]}\n"},
+                                    {"{name: young_modulus}", "{name: gravity.acceleration_z}"}});
+  ASSERT_EQ(study.fitted[0].prior.name, "gravity.acceleration_z");
+  ASSERT_EQ(study.fitted[0].places.size(), 2u);
+  const EffectList changed = WithValues(study.effects, study.fitted, Eigen::Vector2d(-9.7, 1));
+  EXPECT_EQ(GravityOf(changed), Eigen::Vector3d(0, 0, -9.7));
+  const Effect& mass = *changed.back();
+  EXPECT_EQ(mass.Parameters()[ParameterIndex(mass.Card(), "gravity_z")], -9.7);
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesTooFewFrames) {
@@ -153,8 +196,16 @@ TEST_F(ReadingAPredictionStudy, RefusesMarkersWhoseGripFollowsAScan) {
 
 TEST_F(ReadingAPredictionStudy, RefusesAReleaseAfterTheEnd) {
   EXPECT_THAT(MessageAfter({{"release: 0.0437 s", "release: 0.3 s"}}),
-              HasSubstr("recordings[0].hold.release: lies after the recording's last frame, at "
+              HasSubstr("recordings[0].hold.release: lies after the last frame that is used, at "
                         "0.25 s"));
+  const auto message = [&](const std::string& to) {
+    return MessageAfter({{"release: 0.0437 s", "release: 0.1237 s"},
+                         {"    fit_until", "    to: " + to + "\n    fit_until"}});
+  };
+  EXPECT_THAT(message("0.12 s"),
+              HasSubstr("hold.release: lies after the last frame that is used, at 0.12 s: the "
+                        "object is never released"));
+  EXPECT_EQ(message("0.13 s"), "nothing was refused");
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesALoadThatDoesNotCoverTheFrames) {
@@ -165,7 +216,8 @@ TEST_F(ReadingAPredictionStudy, RefusesALoadThatDoesNotCoverTheFrames) {
               ContainsRegex("load.csv covers 0.05 s to 0.2 s, the frames 0 s to 0.25 s"));
   EXPECT_EQ(MessageAfterInRecording(
                 {{"reference", load}},
-                {{"    fit_until", "    from: 0.05 s\n    to: 0.2 s\n    fit_until"}}),
+                {{"release: 0.0437 s", "release: 0.0537 s"},
+                 {"    fit_until", "    from: 0.05 s\n    to: 0.2 s\n    fit_until"}}),
             "nothing was refused");
   EXPECT_THAT(MessageAfterInRecording({{"reference",
                                         "forces: [{name: pull, constant: [0 N, 0 N, 1 N]}]\n"
@@ -234,7 +286,14 @@ TEST_F(ReadingAPredictionStudy, RefusesCandidatesThatCouldNotBeAddedByName) {
 
 TEST_F(ReadingAPredictionStudy, RefusesAReleaseThatNoFrameComesBefore) {
   EXPECT_THAT(MessageAfter({{"release: 0.0437 s", "release: -1 s"}}),
-              HasSubstr("hold.release: lies before the recording's first frame, at 0 s"));
+              HasSubstr("hold.release: lies before the first frame that is used, at 0 s"));
+  const auto message = [&](const std::string& from) {
+    return MessageAfter({{"    fit_until", "    from: " + from + "\n    fit_until"}});
+  };
+  EXPECT_THAT(message("0.05 s"),
+              HasSubstr("hold.release: lies before the first frame that is used, at 0.05 s: no "
+                        "frame shows the object while it is held"));
+  EXPECT_EQ(message("0.04 s"), "nothing was refused");
   EXPECT_THAT(MessageAfter({{"    fit_until", "    fit_untl"}}),
               HasSubstr("did you mean \"fit_until\""));
 }
@@ -254,6 +313,44 @@ TEST_F(ReadingAPredictionStudy, TakesWhatIsKnownBeforeOfAParameter) {
   EXPECT_NEAR(fitted[1].prior.prior_deviation, 0.5, 1e-12);
   EXPECT_THAT(MessageAfter({{"{name: young_modulus}", "{name: young_modulus, mean: 0.2 MPa}"}}),
               HasSubstr("parameters[0].mean: needs a `deviation` beside it"));
+}
+
+// Far outside of what is plausible, but possible.
+TEST_F(ReadingAPredictionStudy, StartsFromAnyValueThatTheCardAllows) {
+  for (const char* fit : {"fit: {parameters: [{name: young_modulus}, {name: mass_damping.alpha}]}",
+                          "fit: {parameters: [{name: young_modulus}]}", ""}) {
+    const PredictionStudy study = ReadBarStudy(
+        folder_.Path(),
+        {{"young_modulus: 0.15 MPa", "young_modulus: 0.5 Pa"},
+         {"fit: {parameters: [{name: young_modulus}, {name: mass_damping.alpha}]}", fit}});
+    const CalibratedParameter& modulus = study.fitted[0].prior;
+    ASSERT_EQ(modulus.name, "young_modulus");
+    EXPECT_EQ(modulus.start, 0.5);
+    EXPECT_LT(modulus.min, modulus.start) << fit;
+    EXPECT_GT(modulus.min, 0) << "an open bound";
+  }
+  EXPECT_THAT(MessageAfter({{"young_modulus: 0.15 MPa", "young_modulus: 0 Pa"}}),
+              ContainsRegex("material.young_modulus: got \"0 Pa\""));
+}
+
+// A fit stays away from a bound at which the model degenerates, not from one that the user sets.
+TEST_F(ReadingAPredictionStudy, ClosesABoundThatLiesInsideAnOpenOne) {
+  const auto ratio = [&](const std::string& bounds) {
+    return ReadBarStudy(folder_.Path(),
+                        {{"{name: young_modulus}", "{name: poisson_ratio" + bounds + "}"}})
+        .fitted[0]
+        .prior;
+  };
+  const CalibratedParameter as_on_card = ratio("");
+  EXPECT_TRUE(as_on_card.open_min && as_on_card.open_max);
+  EXPECT_LT(as_on_card.max, 0.5);
+  const CalibratedParameter limited = ratio(", max: 0.45");
+  EXPECT_EQ(limited.max, 0.45);
+  EXPECT_TRUE(limited.open_min);
+  EXPECT_FALSE(limited.open_max);
+  EXPECT_FALSE(ratio(", min: 0").open_min);
+  EXPECT_TRUE(ratio(fmt::format(", max: {}", as_on_card.max)).open_max)
+      << "as `lacuna add` writes it";
 }
 
 TEST_F(ReadingAPredictionStudy, TakesAnUncertainDensityWhereItsWeightIsKnown) {
@@ -277,6 +374,43 @@ TEST_F(ReadingAPredictionStudy, TakesAnUncertainDensityWhereItsWeightIsKnown) {
                              "-9.8 m/s^2]}]\n    fit_until"}}),
               HasSubstr("density_deviation: needs gravity in the list `effects` of the "
                         "experiment, not in that of bar"));
+}
+
+// Both would act: gravity upside down in one recording would cancel that of the experiment.
+TEST_F(ReadingAPredictionStudy, RefusesASecondGravityInARecording) {
+  const std::string gravity = "{type: gravity, acceleration: [0, 0, 9.80665 m/s^2]}";
+  const auto message = [&](const std::string& own, Replacements more = {}) {
+    more.insert({"    fit_until", "    effects: [" + own + "]\n    fit_until"});
+    return MessageAfter(more);
+  };
+  EXPECT_THAT(message(gravity),
+              HasSubstr("recordings[0].effects[0].type: gravity is listed among the effects of the "
+                        "experiment already"));
+  const Replacements nowhere_else{
+      {"  - {type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}\n", ""}};
+  EXPECT_EQ(message(gravity, nowhere_else), "nothing was refused");
+  EXPECT_THAT(message(gravity + ", " + gravity, nowhere_else),
+              HasSubstr("recordings[0].effects[1].type: gravity is listed twice"));
+  const std::string push = "{type: point_force, force: [0, 0, 1 mN], centre: [0.08 m, 0 m, 0 m]}";
+  EXPECT_EQ(message(push + ", " + push), "nothing was refused") << "of these a model may have two";
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesAMassInOneRecordingWhoseWeightIsNotKnown) {
+  const auto message = [&](const std::string& more, const std::string& fitted) {
+    return MessageAfter(
+        {{"    fit_until", "    effects: [{type: attached_mass, mass: 2 g, centre: [80 mm, 0, 0]" +
+                               more + "}]\n    fit_until"},
+         {"{name: mass_damping.alpha}", fitted}});
+  };
+  const std::string alpha = "{name: mass_damping.alpha}",
+                    gravity = "{name: gravity.acceleration_z}";
+  EXPECT_EQ(message("", alpha), "nothing was refused");
+  EXPECT_THAT(message(", gravity: [0, 0, -9.81 m/s^2]", alpha),
+              HasSubstr("gravity: the gravity of the model is [0, 0, -9.80665] m/s^2"));
+  EXPECT_THAT(message("", gravity),
+              HasSubstr("fit: gravity.acceleration_z cannot be fitted: the weight of attached_mass "
+                        "among the effects of bar would stay the same"));
+  EXPECT_EQ(message(", gravity: [0, 0, 0]", gravity), "nothing was refused");
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesPlacementsThatSayNothing) {

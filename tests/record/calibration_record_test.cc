@@ -21,6 +21,7 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   record.usable = true;
   record.noise = 1e-4;
   record.step_error = INFINITY;
+  record.notes = {"the time step may be too long"};
   FittedParameter& parameter = record.parameters.emplace_back();
   parameter.name = "material.young_modulus";
   parameter.estimate.value = 2;
@@ -54,6 +55,7 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   const CalibrationRecord read = ReadCalibrationFile(folder / "calibration.json");
   EXPECT_TRUE(read.usable);
   EXPECT_EQ(read.step_error, INFINITY);
+  EXPECT_EQ(read.notes, record.notes);
   ASSERT_EQ(read.parameters.size(), 1u);
   EXPECT_EQ(read.parameters[0].estimate.low, 1);
   EXPECT_EQ(read.parameters[0].estimate.high, INFINITY);

@@ -30,7 +30,10 @@ TEST(CalibrationReport, ShowsParametersErrorsAndConflicts) {
   record.held = {{"density", "kg/m^3", {1070}}, {"gravity.acceleration", "m/s^2", {0, 0, -9.81}}};
   record.recordings.push_back({"swing", true, 1e-4, {3, 30, 1e-4, 2e-4, 1.5}, {}, std::nullopt});
   record.prior_conflicts = {MarkerConflictCount{"swing", 7, 8}};
+  record.notes = {"the time step of 2 ms may be too long"};
+  EXPECT_THAT(CalibrationSummary(record), HasSubstr("  note: the time step of 2 ms may be too"));
   const std::string text = CalibrationReport(record);
+  EXPECT_THAT(text, HasSubstr("  note: the time step of 2 ms may be too long\n"));
   EXPECT_THAT(text, HasSubstr("traded off with drag.coefficient (correlation 0.97)"));
   EXPECT_THAT(text, HasSubstr("14 with finer elements and steps; near its lower bound 10.9"));
   EXPECT_THAT(text, HasSubstr("held fixed: density 1070 kg/m^3; gravity.acceleration [0, 0, -9.81] "

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/json_file.h"
 #include "record/manifest.h"
 #include "record/packed_array.h"
 #include "report/reported_run.h"
