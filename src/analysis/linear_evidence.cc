@@ -28,6 +28,26 @@ double LogTwiceNormal(double z) {
   return -0.5 * z * z - std::log(-z * std::sqrt(0.5 * M_PI));
 }
 
+double LogMeanExp(const std::vector<double>& values) {
+  const double largest = *std::max_element(values.begin(), values.end());
+  double sum = 0;
+  for (const double value : values) sum += std::exp(value - largest);
+  return largest + std::log(sum / static_cast<double>(values.size()));
+}
+
+void AppendColumns(const Eigen::MatrixXd& more, const std::vector<LinearPrior>& more_priors,
+                   Eigen::MatrixXd* columns, std::vector<LinearPrior>* priors) {
+  CHECK_EQ(more.cols(), static_cast<Eigen::Index>(more_priors.size()));
+  CHECK_EQ(columns->cols(), static_cast<Eigen::Index>(priors->size()));
+  const Eigen::Index before = columns->cols();
+  if (columns->rows() == 0 && before == 0) columns->resize(more.rows(), 0);
+  if (more.cols() == 0) return;
+  CHECK_EQ(more.rows(), columns->rows());
+  columns->conservativeResize(Eigen::NoChange, before + more.cols());
+  columns->rightCols(more.cols()) = more;
+  priors->insert(priors->end(), more_priors.begin(), more_priors.end());
+}
+
 LinearGaussianModel::LinearGaussianModel(const Eigen::VectorXd& residual,
                                          const Eigen::MatrixXd& columns,
                                          std::vector<LinearPrior> priors)

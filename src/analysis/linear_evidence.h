@@ -27,6 +27,15 @@ struct LinearPrior {
 // at 0 changes the evidence of an amount that is z standard deviations above 0.
 double LogTwiceNormal(double z);
 
+// The logarithm of the mean of exp(value): from the log Bayes factors of alternatives that are
+// equally probable, that of all of them together. There must be a value.
+double LogMeanExp(const std::vector<double>& values);
+
+// Appends columns (n × k) with their k priors to `columns` and `priors`. An empty matrix gets the
+// rows of `more`. CHECKs the sizes.
+void AppendColumns(const Eigen::MatrixXd& more, const std::vector<LinearPrior>& more_priors,
+                   Eigen::MatrixXd* columns, std::vector<LinearPrior>* priors);
+
 struct LinearFit {
   double log_evidence = 0;    // ln p, natural logarithm
   Eigen::VectorXd change;     // δ̂, in the order of the chosen columns

@@ -17,8 +17,8 @@ namespace {
 std::atomic<int> thread_count{0};
 thread_local bool inside_loop = false;
 
-// The number of times that a helper polls for the next loop before it sleeps. This takes about
-// 50 µs, the typical time between two loops of one computation.
+// How often a thread polls before it sleeps: a helper for the next loop, a caller for its helpers.
+// This takes about 50 µs, the typical time between two loops of one computation.
 constexpr int kSpins = 1000;
 
 void Pause() {
@@ -91,10 +91,8 @@ class Helpers {
       const std::lock_guard lock(mutex_);
       current_ = nullptr;
     }
-    for (int inside = loop->helpers_inside; inside > 0; inside = loop->helpers_inside) {
-      for (int k = 0; k < kSpins && loop->helpers_inside > 0; ++k) Pause();
-      if (loop->helpers_inside > 0) std::this_thread::yield();
-    }
+    for (int k = 0; k < kSpins && loop->helpers_inside > 0; ++k) Pause();
+    for (int64_t seen = left_; loop->helpers_inside > 0; seen = left_) left_.wait(seen);
     return true;
   }
 
@@ -108,7 +106,9 @@ class Helpers {
       Loop* loop = Enter();
       if (loop == nullptr) continue;
       loop->Work();
-      --loop->helpers_inside;
+      --loop->helpers_inside;  // after which the loop may be gone
+      ++left_;
+      left_.notify_one();
     }
   }
 
@@ -124,6 +124,7 @@ class Helpers {
   std::mutex mutex_;  // protects current_ and the entry of helpers into its loop
   Loop* current_ = nullptr;
   std::atomic<int64_t> loops_ = 0;
+  std::atomic<int64_t> left_ = 0;  // how often a helper has left a loop
 };
 
 }  // namespace

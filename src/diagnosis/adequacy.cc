@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "analysis/linear_evidence.h"
 #include "scan/random_bits.h"
 
 namespace lacuna {
@@ -16,7 +17,7 @@ namespace {
 // Simulated residuals of a test. More: a finer tail probability; 400 give 0.02 to within 0.007.
 constexpr int kDraws = 400;
 // Eigenvalues of AᵀA, scaled to a unit diagonal, below this share are rounding.
-constexpr double kRounding = 1e-12;
+constexpr double kEigenvalueRounding = 1e-12;
 
 // The share of the values, of which `value` is one, that are not smaller.
 double TailProbability(const std::vector<double>& sorted, double value) {
@@ -55,13 +56,9 @@ std::vector<NamedEvidence> SumVariants(const HypothesisSpace& space,
   }
   std::map<HypothesisKind, int> rivals;
   for (const NamedEvidence& own : named) ++rivals[own.kind];
-  for (size_t k = 0; k < named.size(); ++k) {
-    const double largest = *std::max_element(variants[k].begin(), variants[k].end());
-    double sum = 0;
-    for (const double factor : variants[k]) sum += std::exp(factor - largest);
-    named[k].evidence = largest + std::log(sum / static_cast<double>(variants[k].size())) -
-                        std::log(static_cast<double>(rivals[named[k].kind]));
-  }
+  for (size_t k = 0; k < named.size(); ++k)
+    named[k].evidence =
+        LogMeanExp(variants[k]) - std::log(static_cast<double>(rivals[named[k].kind]));
   return named;
 }
 
@@ -141,7 +138,7 @@ NoiseDraws::NoiseDraws(const HypothesisSpace& space)
   const Eigen::VectorXd inverse = unit.cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
       Eigen::MatrixXd(inverse.asDiagonal() * products * inverse.asDiagonal()));
-  const double least = kRounding * eigen.eigenvalues().tail<1>()[0];
+  const double least = kEigenvalueRounding * eigen.eigenvalues().tail<1>()[0];
   const Eigen::Index rank = (eigen.eigenvalues().array() > least).count();
   root_ = unit.asDiagonal() * eigen.eigenvectors().rightCols(rank) *
           eigen.eigenvalues().tail(rank).cwiseSqrt().asDiagonal();

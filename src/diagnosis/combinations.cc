@@ -43,11 +43,9 @@ std::vector<EffectWithFurther> FirstEffects(const DecisionInput& input,
     if (FindRefit(input, first.names.front()) == nullptr && &first != &posterior.front()) continue;
     const TestedSpace tested = TestedSpaceOf(input, first_order, first);
     const ProjectedHypotheses beside(*tested.space, tested.columns);
-    const Eigen::VectorXd factors =
-        beside.LogBayesFactors(beside.Project(tested.space->model.toward()));
     const double own = first.evidence - EvidenceOfAdopted(input);
     effects.push_back({first, kToleratedModelError * std::max(0.0, own), tested,
-                       SumVariants(*tested.space, factors)});
+                       SumVariants(*tested.space, beside.FactorsOfResidual())});
   }
   return effects;
 }

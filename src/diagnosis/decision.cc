@@ -123,8 +123,7 @@ std::vector<std::string> TakeNuisancesBeside(TestedSpace* tested) {
     const ProjectedHypotheses beside(space, tested->columns);
     const NamedEvidence* best = nullptr;
     double effect = 0;
-    const std::vector<NamedEvidence> further =
-        SumVariants(space, beside.LogBayesFactors(beside.Project(space.model.toward())));
+    const std::vector<NamedEvidence> further = SumVariants(space, beside.FactorsOfResidual());
     for (const NamedEvidence& named : further) {
       if (named.kind == HypothesisKind::kEffect)
         effect = std::max(effect, named.evidence);
@@ -205,9 +204,8 @@ std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>
 
 Decision Decide(const DecisionInput& input) {
   const ProjectedHypotheses beside_nothing(input.baseline);
-  const std::vector<NamedEvidence> first_order = SumVariants(
-      input.baseline,
-      beside_nothing.LogBayesFactors(beside_nothing.Project(input.baseline.model.toward())));
+  const std::vector<NamedEvidence> first_order =
+      SumVariants(input.baseline, beside_nothing.FactorsOfResidual());
   Decision decision;
   DecisionRecord& record = decision.record;
   record.probabilities = PosteriorOf(input, first_order);

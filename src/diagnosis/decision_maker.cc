@@ -5,6 +5,9 @@
 #include <optional>
 #include <utility>
 
+#include "diagnosis/effect_ranking.h"
+#include "diagnosis/effect_refit.h"
+#include "diagnosis/refit_comparison.h"
 #include "effects/catalogue.h"
 
 namespace lacuna {
@@ -13,7 +16,7 @@ namespace {
 // The length of a vector is determined if its mean exceeds so many standard deviations.
 constexpr double kDeterminedLength = 3;
 
-// No effect, at the largest plausible size, would stand out from the noise.
+// Whether any effect would stand out from the noise at its largest plausible size.
 bool IsAnythingDetectable(const std::vector<RankedEffect>& ranking) {
   for (const RankedEffect& effect : ranking) {
     const std::vector<CandidateAmount> amounts = AmountsOf(effect.scored.candidate);
@@ -46,11 +49,11 @@ HypothesisSpace SpaceAlong(const FittedHypothesis& hypothesis, const RefittedRan
                            const EffectRanking& ranking, std::vector<std::string> types,
                            const NoiseLevel& noise) {
   if (!ranked.along) return SpaceOf(hypothesis, ranking, types, noise);
-  const auto along = std::find(types.begin(), types.end(), ranked.along_type);
-  if (along == types.end()) return SpaceOf(hypothesis, *ranked.along_for_others, types, noise);
+  const auto along = std::find(types.begin(), types.end(), ranked.along->type);
+  if (along == types.end()) return SpaceOf(hypothesis, *ranked.along->for_others, types, noise);
   // The ranking along its motion may have this effect a second time.
   types.erase(along);
-  return SpaceOf(hypothesis, *ranked.along, types, noise);
+  return SpaceOf(hypothesis, *ranked.along->ranking, types, noise);
 }
 
 // Nothing if the first effect has no usable refit, or if the evidence is not a finite number.
@@ -92,11 +95,11 @@ double NaturalValueEvidence(const Eigen::Vector3d& mean, const Eigen::Vector3d& 
 }
 
 DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanking& ranked,
-                                const RefitNoise& noise, const Diagnosis& diagnosis) {
+                                const RefitNoise& noise,
+                                const std::vector<ScoredNuisance>& nuisances) {
   const EffectRanking& ranking = context.ranking;
   DecisionInput input;
   input.baseline = SpaceOf(ranked.baseline.hypothesis, ranking, {}, noise.level);
-  const double penalty = SelectionPenalty(ranked.effects.size());
   for (size_t k = 0; k < ranked.effects.size(); ++k) {
     const RankedEffect& effect = ranked.effects[k];
     const CandidateEffect& candidate = effect.scored.candidate;
@@ -104,7 +107,7 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
       input.families[candidate.type] = candidate.effect->Card().family;
     if (!ranked.IsUsable(k)) continue;
     input.refits.push_back(
-        {candidate.type, effect.evidence + penalty,
+        {candidate.type, effect.evidence + effect.penalty_of_effects,
          SpaceAlong(ranked.refits[k].hypothesis, ranked, ranking, {candidate.type}, noise.level),
          effect.predicts});
     if (const double natural = EvidenceOfNaturalValue(candidate, effect.sizes); natural != 0)
@@ -114,18 +117,17 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
     if (std::optional<WeighedPair> weighed = Weigh(pair, ranked, ranking, noise.level))
       input.pairs.push_back(*std::move(weighed));
   input.failed_pairs = ranked.failed_pairs;
-  for (const ScoredNuisance& nuisance : diagnosis.nuisances) {
+  for (const ScoredNuisance& nuisance : nuisances) {
     const std::string& name = nuisance.candidate.card.name;
     if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model &&
         std::count(input.adopted.begin(), input.adopted.end(), name) == 0)
       input.adopted.push_back(name);
     if (nuisance.refitted)
-      input.nuisances.push_back(
-          {name, *nuisance.refitted + SelectionPenalty(diagnosis.nuisances.size())});
+      input.nuisances.push_back({name, *nuisance.refitted + SelectionPenalty(nuisances.size())});
   }
   if (!input.adopted.empty()) {
     // To first order, against the parameters and the nuisances that every model has.
-    for (const ScoredNuisance& nuisance : diagnosis.nuisances)
+    for (const ScoredNuisance& nuisance : nuisances)
       if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model)
         input.adopted_evidence += std::max(0.0, nuisance.evidence);
   }
@@ -138,11 +140,11 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
 void AddAlternatives(const NuisanceAlternatives& alternatives, DecisionInput* input) {
   if (alternatives.nuisances_evidence == 0) return;
   input->adopted_evidence = alternatives.nuisances_evidence;
-  const double penalty = SelectionPenalty(input->families.size());
   for (size_t k = 0; k < alternatives.effects.size(); ++k) {
     const RankedEffect& effect = alternatives.effects[k];
     if (effect.HasUsableRefit())
-      input->in_place_of_adopted.push_back({effect.scored.candidate.type, effect.evidence + penalty,
+      input->in_place_of_adopted.push_back({effect.scored.candidate.type,
+                                            effect.evidence + effect.penalty_of_effects,
                                             alternatives.spaces[k], effect.predicts});
   }
 }

@@ -1,19 +1,23 @@
-// Makes the input of a decision from a ranking and its refits, and the conclusion from the
-// decision.
+// Makes the input of a decision from a ranking and its refits.
 #ifndef LACUNA_DIAGNOSIS_DECISION_MAKER_H_
 #define LACUNA_DIAGNOSIS_DECISION_MAKER_H_
 
-#include <string>
+#include <Eigen/Core>
+#include <vector>
 
-#include "diagnosis/decision.h"
+#include "diagnosis/decision_input.h"
 #include "diagnosis/diagnosis_result.h"
-#include "diagnosis/refits.h"
+#include "diagnosis/refitted_ranking.h"
+#include "diagnosis/scored_effect.h"
+#include "diagnosis/variant_refit.h"
 
 namespace lacuna {
 
-// Without effects in place of adopted nuisances. `diagnosis` has the nuisances and the ranking.
+// Without effects in place of adopted nuisances. `nuisances`: those of the ranking, with the
+// evidence of their refits (WeighNuisances).
 DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanking& ranked,
-                                const RefitNoise& noise, const Diagnosis& diagnosis);
+                                const RefitNoise& noise,
+                                const std::vector<ScoredNuisance>& nuisances);
 
 // Adds the effects that were refitted in place of the adopted nuisances.
 void AddAlternatives(const NuisanceAlternatives& alternatives, DecisionInput* input);

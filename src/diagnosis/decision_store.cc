@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 constexpr int kSchemaVersion = 6;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoPrior = std::numeric_limits<double>::infinity();
 
 constexpr std::pair<HypothesisKind, const char*> kKinds[] = {
     {HypothesisKind::kEffect, "effect"},
@@ -61,7 +61,7 @@ json SpaceToJson(const HypothesisSpace& space) {
 HypothesisSpace SpaceFromJson(const json& value, const std::filesystem::path& products) {
   std::vector<LinearPrior> priors;
   for (const json& prior : value.at("priors"))
-    priors.push_back({0, NumberOr(prior.at(0), kInfinity), prior.at(1).get<bool>()});
+    priors.push_back({0, NumberOr(prior.at(0), kNoPrior), prior.at(1).get<bool>()});
   const Eigen::MatrixXd all = ReadNpyMatrix(products);
   const Eigen::Index size = static_cast<Eigen::Index>(priors.size());
   if (all.rows() != size + 1 || all.cols() != size + 1)

@@ -10,10 +10,15 @@
 #include "calibration/calibration_fits.h"
 #include "diagnosis/decision_maker.h"
 #include "diagnosis/effect_refit.h"
+#include "diagnosis/nuisance_refits.h"
 #include "diagnosis/open_decision.h"
+#include "diagnosis/rank_effects.h"
 #include "diagnosis/recording_power.h"
+#include "diagnosis/refit_comparison.h"
 #include "diagnosis/refits.h"
+#include "diagnosis/refitted_ranking.h"
 #include "diagnosis/thresholds.h"
+#include "diagnosis/variant_refit.h"
 #include "diagnosis/verdict.h"
 
 namespace lacuna {
@@ -98,24 +103,26 @@ std::vector<std::string> EffectsOfInterest(const Decision& decision, const Decis
 // that could be taken for the best one and, where nuisances explain the residual, at effects in
 // their place.
 void DecideUpon(const RefitContext& context, const DiagnosisOptions& options,
-                RefittedRanking* ranked, RefitNoise* noise, Diagnosis* diagnosis) {
-  OpenDecision open{context, options.without, ranked, noise, diagnosis, {}};
+                RefittedRanking ranked, const RefitNoise& noise, Diagnosis* diagnosis) {
+  OpenDecision open{context, options.without, std::move(ranked), noise, context.ranking.nuisances};
   open.DecideAgain();
   RankAlongBest(&open);
   FitRivalPairs(&open);
   Decision& decision = open.decision;
-  DecisionInput& input = diagnosis->decision_input;
   if (decision.verdict == Verdict::kNuisance && context.ranking.adopted.HasMore()) {
-    diagnosis->alternatives = RefitInPlaceOfNuisances(context, *ranked, *noise, options.refits);
-    AddAlternatives(diagnosis->alternatives, &input);
-    decision = Decide(input);
+    diagnosis->alternatives =
+        RefitInPlaceOfNuisances(context, open.ranked, open.noise, options.refits);
+    AddAlternatives(diagnosis->alternatives, &open.input);
+    decision = Decide(open.input);
   }
-  const std::vector<std::string> effects = EffectsOfInterest(decision, input);
-  decision.record.power = SimulatePower(input, effects);
-  decision.record.separations = Separations(input, effects);
-  diagnosis->noise_level = noise->level;
-  diagnosis->best_rms_over_sigma = noise->least_rms_over_sigma;
-  diagnosis->ranking = ranked->effects;
+  const std::vector<std::string> effects = EffectsOfInterest(decision, open.input);
+  decision.record.power = SimulatePower(open.input, effects);
+  decision.record.separations = Separations(open.input, effects);
+  diagnosis->noise_level = open.noise.level;
+  diagnosis->best_rms_over_sigma = open.noise.least_rms_over_sigma;
+  diagnosis->ranking = std::move(open.ranked.effects);
+  diagnosis->nuisances = std::move(open.nuisances);
+  diagnosis->decision_input = std::move(open.input);
   Conclude(decision, diagnosis);
 }
 
@@ -140,17 +147,16 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   RefitAll(context, MostPromising(ranked.effects, options.refits), &ranked);
   // A refit that comes down to the noise shows that first order led to the right minimum.
   const bool is_found =
-      WeighRefits(context, &ranked).least_rms_over_sigma <= kThresholds.refit.converged_rms;
+      WeighRefits(context, &ranked).least_rms_over_sigma <= kThresholds.refit.rms_at_noise;
   if (diagnosis.baseline_rms_over_sigma > kFarFromTruth && !is_found) {
     RefitAsRankedEarly(context, RankEarly(problem, fitted, ranking, setting), options.refits,
                        &ranked);
     WeighRefits(context, &ranked);
   }
   RefitAll(context, LookAlikesOfBest(ranked.effects), &ranked);
-  RefitNoise noise = WeighRefits(context, &ranked);
+  const RefitNoise noise = WeighRefits(context, &ranked);
   RefitRivalNuisances(context, &ranked);
-  diagnosis.nuisances = ranking.nuisances;
-  DecideUpon(context, options, &ranked, &noise, &diagnosis);
+  DecideUpon(context, options, std::move(ranked), noise, &diagnosis);
   return diagnosis;
 }
 
@@ -193,9 +199,9 @@ Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::V
 
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
                    const DiagnosisOptions& options, Progress* progress, RefitStore* kept,
-                   const Eigen::VectorXd& at_mesh_limit) {
+                   const std::optional<OtherMesh>& other_mesh) {
   SceneColumns known;
-  known.at_mesh_limit = at_mesh_limit;
+  known.other_mesh = other_mesh;
   return DiagnoseWithHalvings(problem, fitted, kThresholds.refit.most_halvings,
                               {options, progress, kept}, known);
 }
@@ -209,9 +215,7 @@ DecisionInput FirstOrderInput(const CalibrationProblem& problem, const Eigen::Ve
   // Without a refit, the residual may contain the effect that is missing. The noise of the ranking
   // is what remains when every hypothesis explains as much as it can.
   const RefitNoise noise{ranking.noise, 0};
-  Diagnosis diagnosis;
-  diagnosis.nuisances = ranking.nuisances;
-  return MakeDecisionInput(context, ranked, noise, diagnosis);
+  return MakeDecisionInput(context, ranked, noise, ranking.nuisances);
 }
 
 }  // namespace lacuna

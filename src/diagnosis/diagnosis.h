@@ -1,7 +1,7 @@
 // Diagnoses which physical effect a fitted model lacks.
 //
 // 1. Every effect of the catalogue, and every nuisance that may imitate one, is ranked by its
-//    first-order evidence along the fitted trajectory (effect_ranking.h).
+//    first-order evidence along the fitted trajectory (rank_effects.h).
 // 2. The best effects are added to the model, one at a time, and fitted with it (refits.h). What
 //    counts is the evidence of all frames, including the held-out ones, with a noise that is at
 //    least as large and as correlated as the residual of the best-fitting model: the one with the
@@ -15,6 +15,7 @@
 #define LACUNA_DIAGNOSIS_DIAGNOSIS_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,11 +36,11 @@ struct DiagnosisOptions {
 // CalibrationProblem::parameters. If the study leaves the time step open, and the uncertainty in
 // the error of the step could explain the evidence for an effect, the study is fitted and diagnosed
 // again with a shorter step. `kept`: where fits are kept, so that an interrupted diagnosis
-// continues there; null: they are not kept. `at_mesh_limit`: the fitted values with infinitely fine
-// elements, as FindKnownErrors() has found them; empty: unknown. Throws Interrupted.
+// continues there; null: they are not kept. `other_mesh`: what the fit has found about the mesh
+// (KnownErrors); empty: nothing. Throws Interrupted.
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
                    const DiagnosisOptions& options, Progress* progress, RefitStore* kept = nullptr,
-                   const Eigen::VectorXd& at_mesh_limit = {});
+                   const std::optional<OtherMesh>& other_mesh = {});
 
 // What a decision without any refit of an effect would be made from, with all effects of the
 // catalogue. Throws Interrupted.

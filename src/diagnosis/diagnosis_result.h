@@ -28,13 +28,14 @@ struct RankedEffect {
   std::string unconverged;    // as in EffectRefit
   bool predicts = true;       // as Predicts (effect_refit.h) says
   ModelErrors errors;
-  double evidence = 0;                   // as in RecordedRefit (record/diagnosis_record.h)
-  double held_out_evidence = 0;          // the part of it that the held-out frames contribute
-  double explained = 0;                  // share of the squared misfit
-  std::optional<ByDataKind> removed;     // RemovedMisfit (removed_misfit.h) of the refit
-  double rms_over_sigma = 0;             // all frames, with the adopted nuisances at their best
-  Eigen::VectorXd values;                // the effect's parameters; empty: there is no usable refit
-  Eigen::VectorXd model;                 // as in EffectRefit
+  double evidence = 0;                // as in RecordedRefit (record/diagnosis_record.h)
+  double penalty_of_effects = 0;      // for the choice among all effects, subtracted in `evidence`
+  double held_out_evidence = 0;       // the part of it that the held-out frames contribute
+  double explained = 0;               // share of the squared misfit
+  std::optional<ByDataKind> removed;  // RemovedMisfit (removed_misfit.h) of the refit
+  double rms_over_sigma = 0;          // all frames, with the adopted nuisances at their best
+  Eigen::VectorXd values;             // the effect's parameters; empty: there is no usable refit
+  Eigen::VectorXd model;              // as in EffectRefit
   std::vector<ParameterEstimate> sizes;  // of the parameters that make its size
   std::vector<NamedEstimate> others;     // as in EffectRefit
 

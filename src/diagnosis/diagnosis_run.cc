@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 
 // Raised when the diagnosis changes so that its result does.
-constexpr int kDiagnosisVersion = 49;
+constexpr int kDiagnosisVersion = 50;
 
 std::filesystem::path ResultFile(const std::filesystem::path& run) {
   return run / "diagnosis" / "diagnosis.json";
@@ -129,16 +129,6 @@ bool IsOfThisFit(const std::filesystem::path& run) {
   return true;
 }
 
-// The fitted values with infinitely fine elements; empty where the fit has not found them.
-Eigen::VectorXd ValuesAtMeshLimit(const CalibrationRecord& record) {
-  Eigen::VectorXd values(static_cast<Eigen::Index>(record.parameters.size()));
-  for (size_t k = 0; k < record.parameters.size(); ++k) {
-    if (!record.parameters[k].with_finest_mesh) return {};
-    values[static_cast<Eigen::Index>(k)] = *record.parameters[k].with_finest_mesh;
-  }
-  return values;
-}
-
 }  // namespace
 
 bool IsDiagnosed(const std::filesystem::path& run, const DiagnosisOptions& options) {
@@ -158,8 +148,8 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
   const CalibrationProblem problem(fitted.study, fitted.mesh);
   MakeFolder(ResultFile(run).parent_path());
   RefitStore kept(RefitsFile(run), OriginOf(run, options));
-  const Diagnosis diagnosis =
-      Diagnose(problem, fitted.values, options, progress, &kept, ValuesAtMeshLimit(fitted.record));
+  const Diagnosis diagnosis = Diagnose(problem, fitted.values, options, progress, &kept,
+                                       ReadOtherMesh(FinishedStage(run, "calibration")));
   SaveDecisionInput(diagnosis.decision_input, DecisionFolder(run));
   WriteDiagnosisFile(RecordOf(diagnosis), ResultFile(run));
   const json settings = SettingsOf(diagnosis);

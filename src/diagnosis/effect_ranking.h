@@ -1,32 +1,20 @@
-// Ranks every effect that a fitted model may lack, beside every nuisance that may imitate one, by
-// first-order evidence along the fitted trajectory.
-//
-// One tangent-linear simulation gives the changes of the residual by the model's parameters, the
-// sizes of all effects in all their variants, and the motions of the grips. Effects without a
-// derivative are simulated by themselves (pilot_hypotheses.h), and so are the nuisances of the
-// mesh, the time step and the shape (nuisance_catalogue.h). All of them become columns of one
-// linear Gaussian model (hypothesis_score.h).
-//
-// A nuisance whose evidence exceeds that of the best effect by RankingThresholds::nuisance_lead is
-// adopted: it becomes part of the model, and the rest is scored again.
+// The ranking of the effects that a fitted model may lack, by first-order evidence, as a value
+// (rank_effects.h makes it), and the space of its hypotheses beside another base.
 #ifndef LACUNA_DIAGNOSIS_EFFECT_RANKING_H_
 #define LACUNA_DIAGNOSIS_EFFECT_RANKING_H_
 
 #include <Eigen/Core>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/linear_evidence.h"
 #include "calibration/calibration_problem.h"
 #include "calibration/linear_misfit.h"
-#include "core/progress.h"
-#include "diagnosis/hypothesis_score.h"
 #include "diagnosis/hypothesis_space.h"
-#include "diagnosis/pilot_hypotheses.h"
 #include "diagnosis/scene_columns.h"
 #include "diagnosis/scored_effect.h"
 #include "record/agreement_record.h"
+#include "record/model_errors.h"
 
 namespace lacuna {
 
@@ -67,22 +55,6 @@ HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixX
                             std::vector<LinearPrior> priors, const EffectRanking& ranking,
                             const std::vector<std::string>& without, const NoiseLevel& noise,
                             bool base_has_adopted = true);
-
-// What an earlier ranking of the same recordings has decided: which nuisances are part of the
-// model, beside those of every model, and how large the noise is. The columns of these nuisances
-// are those along the motion of the new ranking; one that cannot be made there, such as a bad frame
-// that is not the worst one along that motion, keeps the columns of the earlier ranking.
-struct DecidedBase {
-  const EffectRanking& ranking;
-  NoiseLevel noise;
-};
-
-// Ranks the effects of the catalogue, but for the types in `without`, beside the study of `problem`
-// with the fitted `values` of CalibrationProblem::parameters. What `known` has is taken from there
-// instead of simulated. With `decided`, no nuisance is adopted anew. Throws Interrupted.
-EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                          Progress* progress, const std::vector<std::string>& without = {},
-                          const SceneColumns& known = {}, const DecidedBase* decided = nullptr);
 
 }  // namespace lacuna
 

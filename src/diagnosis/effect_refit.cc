@@ -68,14 +68,15 @@ HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking&
 namespace {
 
 // Sets what a refit says of the fitted frames and of all frames, from a hypothesis near both.
-void SettleRefit(const CalibrationProblem& problem, const AdoptedNuisances& adopted,
-                 const BaselineModel& baseline, Settled start, EffectRefit* refit) {
-  Settled fitted = Settle(problem, std::move(start), adopted, baseline.misfit, baseline.noise,
-                          /*fitted_only=*/true);
+void SettleRefit(const CalibrationProblem& problem, const RefitSetting& setting, Settled start,
+                 EffectRefit* refit) {
+  const BaselineModel& baseline = setting.model;
+  Settled fitted = Settle(problem, std::move(start), setting.adopted, baseline.misfit,
+                          baseline.noise, /*fitted_only=*/true);
   refit->at_fit = fitted.hypothesis;
   refit->values_at_fit = fitted.values;
-  refit->hypothesis = Settle(problem, std::move(fitted), adopted, baseline.misfit, baseline.noise,
-                             /*fitted_only=*/false)
+  refit->hypothesis = Settle(problem, std::move(fitted), setting.adopted, baseline.misfit,
+                             baseline.noise, /*fitted_only=*/false)
                           .hypothesis;
 }
 
@@ -107,7 +108,7 @@ ExtendedFit FitFromTwoStarts(const ExtendedProblem& extended, const std::string&
   Calibration afresh;
   const auto is_good = [&] {
     return !fit.calibration.estimates.empty() &&
-           fit.calibration.rms <= kThresholds.refit.converged_rms;
+           fit.calibration.rms <= kThresholds.refit.rms_at_noise;
   };
   const auto fit_from_start = [&] {
     fit = extended.CalibrateFrom(start, stage, hopeless_cost, progress);
@@ -138,41 +139,53 @@ ExtendedFit FitFromTwoStarts(const ExtendedProblem& extended, const std::string&
   return std::move(better);
 }
 
-ExtendedFit FitExtended(const ExtendedProblem& extended, const std::string& stage, bool is_far_off,
-                        RefitFrom from, const Eigen::VectorXd& refitted, double hopeless_cost,
-                        Progress* progress) {
-  Eigen::VectorXd start;
-  if (from == RefitFrom::kFixedSize) start = extended.StartAtFixedSize(stage + " at a size");
-  if (start.size() == 0) start = extended.Start(refitted);
-  // A fit with the effect held at a size has given another start already.
-  return is_far_off && from == RefitFrom::kFirstOrder
-             ? FitFromTwoStarts(extended, stage, start, hopeless_cost, progress)
-             : extended.CalibrateFrom(start, stage, hopeless_cost, progress);
-}
-
 std::string StageOf(const ScoredVariant* effect) {
   return effect != nullptr ? "refit " + effect->candidate.type : "refit";
 }
 
-// Sets what depends on the nuisances beside a refit, whose hypothesis is that at `values`.
-void FinishBeside(const ExtendedProblem& extended, const BaselineModel& baseline,
-                  const AdoptedNuisances& adopted, const Eigen::VectorXd& values,
-                  EffectRefit* refit) {
+ExtendedFit FitExtended(const ExtendedProblem& extended, const ScoredVariant* effect,
+                        const RefitOptions& options, Progress* progress) {
+  const std::string stage = StageOf(effect);
+  Eigen::VectorXd start;
+  if (options.from == RefitFrom::kFixedSize)
+    start = extended.StartAtFixedSize(stage + " at a size");
+  if (start.size() == 0) {
+    Eigen::VectorXd refitted;
+    if (effect != nullptr && options.without != nullptr && options.without->message.empty())
+      refitted = options.without->calibration.parameters;
+    start = extended.Start(refitted);
+  }
+  // A fit with the effect held at a size has given another start already.
+  return effect != nullptr && options.is_far_off && options.from == RefitFrom::kFirstOrder
+             ? FitFromTwoStarts(extended, stage, start, options.hopeless_cost, progress)
+             : extended.CalibrateFrom(start, stage, options.hopeless_cost, progress);
+}
+
+// Sets what depends on the nuisances beside a refit, whose hypothesis is that at `values`, and
+// `settles` the refit.
+void FinishBeside(const ExtendedProblem& extended, const RefitSetting& setting,
+                  const Eigen::VectorXd& values, bool settles, EffectRefit* refit) {
+  const LinearisedMisfit& of_baseline = setting.model.misfit;
   const LinearisedMisfit& misfit = refit->hypothesis.misfit;
   refit->message = misfit.message;
   if (!misfit.usable) return;
   refit->amounts = extended.AmountsAt(misfit);
-  const Eigen::VectorXd residual = misfit.residual + adopted.columns * refit->amounts;
-  const Eigen::VectorXd white = WhitenedRows(residual, baseline.misfit, 0, false);
-  refit->errors.without_nuisances = HeldOutInNoise(white, baseline.misfit);
-  SettleRefit(extended.problem(), adopted, baseline, {values, std::move(refit->hypothesis)}, refit);
+  const Eigen::VectorXd residual = misfit.residual + setting.adopted.columns * refit->amounts;
+  const Eigen::VectorXd white = WhitenedRows(residual, of_baseline, 0, false);
+  refit->errors.without_nuisances = HeldOutInNoise(white, of_baseline);
+  if (settles) {
+    SettleRefit(extended.problem(), setting, {values, std::move(refit->hypothesis)}, refit);
+  } else {
+    refit->at_fit = refit->hypothesis;
+    refit->values_at_fit = values;
+  }
 }
 
 // What a fit says of its effect, of the fitted frames and of all frames.
 EffectRefit FinishedRefit(ExtendedFit fit, const ExtendedProblem& extended,
-                          const BaselineModel& baseline, const ScoredVariant* effect,
-                          const AdoptedNuisances& adopted) {
-  const LinearisedMisfit& misfit = baseline.misfit;
+                          const RefitSetting& setting, const ScoredVariant* effect,
+                          double hopeless_cost) {
+  const LinearisedMisfit& misfit = setting.model.misfit;
   const CalibrationProblem& with = extended.problem();
   EffectRefit refit;
   refit.calibration = std::move(fit.calibration);
@@ -187,16 +200,18 @@ EffectRefit FinishedRefit(ExtendedFit fit, const ExtendedProblem& extended,
   if (!own_misfit.usable && !with.HasScans())
     own_misfit = with.Linearise(calibration.parameters, true, {}, nullptr, &misfit);
   const LinearisedMisfit* known = own_misfit.usable ? &own_misfit : nullptr;
-  refit.hypothesis = HypothesisAt(with, calibration.parameters, adopted, misfit, nullptr, known);
+  refit.hypothesis =
+      HypothesisAt(with, calibration.parameters, setting.adopted, misfit, nullptr, known);
   refit.errors = ErrorsOf(with, calibration.parameters, known);
   if (effect != nullptr) {
     refit.effect = extended.OwnParameters(calibration.parameters);
     refit.model = calibration.parameters.head(
-        static_cast<Eigen::Index>(baseline.problem.study().fitted.size()));
+        static_cast<Eigen::Index>(setting.model.problem.study().fitted.size()));
     refit.sizes = extended.SizesIn(calibration);
     refit.others = extended.OthersIn(calibration);
   }
-  FinishBeside(extended, baseline, adopted, calibration.parameters, &refit);
+  const bool is_hopeless = !calibration.usable && calibration.cost > hopeless_cost;
+  FinishBeside(extended, setting, calibration.parameters, !is_hopeless, &refit);
   return refit;
 }
 
@@ -234,22 +249,16 @@ bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
          with.without_nuisances > kThresholds.refit.held_out_growth * without.without_nuisances;
 }
 
-EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
-                  const AdoptedNuisances& adopted, bool is_far_off, RefitFrom from,
-                  const EffectRefit* without, double hopeless_cost) {
-  const ExtendedProblem extended(baseline, effect, adopted);
-  Eigen::VectorXd refitted;
-  if (effect != nullptr && without != nullptr && without->message.empty())
-    refitted = without->calibration.parameters;
-  ExtendedFit fit = FitExtended(extended, StageOf(effect), effect != nullptr && is_far_off, from,
-                                refitted, hopeless_cost, baseline.progress);
-  return FinishedRefit(std::move(fit), extended, baseline, effect, adopted);
+EffectRefit Refit(const RefitSetting& setting, const ScoredVariant* effect,
+                  const RefitOptions& options) {
+  const ExtendedProblem extended(setting.model, effect, setting.adopted);
+  ExtendedFit fit = FitExtended(extended, effect, options, setting.model.progress);
+  return FinishedRefit(std::move(fit), extended, setting, effect, options.hopeless_cost);
 }
 
-EffectRefit RefitFromValues(const BaselineModel& baseline, const ScoredVariant* effect,
-                            const AdoptedNuisances& adopted, const Eigen::VectorXd& values,
-                            double hopeless_cost) {
-  const ExtendedProblem extended(baseline, effect, adopted);
+EffectRefit RefitFromValues(const RefitSetting& setting, const ScoredVariant* effect,
+                            const Eigen::VectorXd& values, double hopeless_cost) {
+  const ExtendedProblem extended(setting.model, effect, setting.adopted);
   const std::vector<CalibratedParameter>& parameters = extended.problem().parameters();
   CHECK_EQ(values.size(), static_cast<Eigen::Index>(parameters.size()));
   Eigen::VectorXd start = values;
@@ -258,18 +267,17 @@ EffectRefit RefitFromValues(const BaselineModel& baseline, const ScoredVariant* 
     value = std::clamp(value, parameters[k].min, parameters[k].max);
   }
   ExtendedFit fit =
-      extended.CalibrateFrom(start, StageOf(effect), hopeless_cost, baseline.progress);
-  return FinishedRefit(std::move(fit), extended, baseline, effect, adopted);
+      extended.CalibrateFrom(start, StageOf(effect), hopeless_cost, setting.model.progress);
+  return FinishedRefit(std::move(fit), extended, setting, effect, hopeless_cost);
 }
 
-EffectRefit ContinueWithinBudget(const BaselineModel& baseline, const ScoredVariant* effect,
-                                 const AdoptedNuisances& adopted, EffectRefit refit,
-                                 double hopeless_cost, int predictions) {
+EffectRefit ContinueWithinBudget(const RefitSetting& setting, const ScoredVariant* effect,
+                                 EffectRefit refit, double hopeless_cost, int predictions) {
   predictions += refit.calibration.predictions;
   while (predictions < kThresholds.refit.most_of_effect && refit.message.empty() &&
          !refit.unconverged.empty() && refit.calibration.cost <= hopeless_cost) {
     EffectRefit further =
-        RefitFromValues(baseline, effect, adopted, refit.calibration.parameters, hopeless_cost);
+        RefitFromValues(setting, effect, refit.calibration.parameters, hopeless_cost);
     predictions += further.calibration.predictions;
     if (!further.message.empty()) break;
     const double gained = refit.calibration.cost - further.calibration.cost;
@@ -279,14 +287,37 @@ EffectRefit ContinueWithinBudget(const BaselineModel& baseline, const ScoredVari
   return refit;
 }
 
-EffectRefit SettledBeside(const BaselineModel& baseline, const ScoredVariant& effect,
-                          const AdoptedNuisances& adopted, EffectRefit refit) {
-  const ExtendedProblem extended(baseline, &effect, adopted);
+EffectRefit RefitWithout(const RefitSetting& setting) {
+  return ContinueWithinBudget(setting, nullptr, Refit(setting, nullptr));
+}
+
+namespace {
+
+EffectRefit MovedBeside(const ExtendedProblem& extended, const RefitSetting& setting,
+                        EffectRefit refit, bool settles) {
   const Eigen::VectorXd values = refit.values_at_fit;
-  refit.hypothesis =
-      HypothesisAt(extended.problem(), values, adopted, baseline.misfit, &refit.at_fit);
-  FinishBeside(extended, baseline, adopted, values, &refit);
+  refit.hypothesis = HypothesisAt(extended.problem(), values, setting.adopted, setting.model.misfit,
+                                  nullptr, &refit.at_fit.misfit);
+  FinishBeside(extended, setting, values, settles, &refit);
   return refit;
+}
+
+}  // namespace
+
+MovedRefit MovedBeside(const RefitSetting& setting, const ScoredVariant& effect, EffectRefit refit,
+                       const NoiseLevel& noise) {
+  const ExtendedProblem extended(setting.model, &effect, setting.adopted);
+  MovedRefit moved{MovedBeside(extended, setting, std::move(refit), /*settles=*/false)};
+  if (moved.refit.message.empty())
+    moved.gain_in_reach = FirstOrderGain(
+        extended.problem(), {moved.refit.values_at_fit, moved.refit.hypothesis}, noise);
+  return moved;
+}
+
+EffectRefit SettledBeside(const RefitSetting& setting, const ScoredVariant& effect,
+                          EffectRefit refit) {
+  const ExtendedProblem extended(setting.model, &effect, setting.adopted);
+  return MovedBeside(extended, setting, std::move(refit), /*settles=*/true);
 }
 
 }  // namespace lacuna

@@ -81,43 +81,71 @@ bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLe
 // the effect follows the fitted frames with wrong parameters.
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without);
 
+// What effects are added to: the baseline, and the nuisances beside it. References must outlive it.
+struct RefitSetting {
+  const BaselineModel& model;
+  const AdoptedNuisances& adopted;
+};
+
 // Where a refit starts: where ExtendedProblem::Start() does, or with the effect held near its
 // predicted size and the others fitted to that.
 enum class RefitFrom { kFirstOrder, kFixedSize };
 
+struct RefitOptions {
+  // The baseline is far from the measurements. A refit that does not come down to the noise
+  // (RefitThresholds::rms_at_noise) is then repeated from the result of an independent fit of the
+  // model with the effect.
+  bool is_far_off = false;
+  RefitFrom from = RefitFrom::kFirstOrder;
+  // The refit with the same nuisances and without the effect, beside whose parameters the refit may
+  // start; null: unknown.
+  const EffectRefit* without = nullptr;
+  // As in CalibrationOptions; a fit that this ends is not settled.
+  double hopeless_cost = std::numeric_limits<double>::infinity();
+};
+
 // Fits the baseline with the effect and the adopted nuisances. Null `effect`: with the nuisances
-// alone, so that the baseline is compared at its best too. `is_far_off` says that the baseline is
-// far from the measurements: a refit that has not converged is then repeated from the result of an
-// independent fit of the model with the effect. `without`: the refit with the same nuisances and
-// without the effect, beside whose parameters the refit may start; null: unknown. `hopeless_cost`:
-// as in CalibrationOptions. A failed fit gives a message. Refits of one baseline may run in several
-// threads. Throws Interrupted.
-EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
-                  const AdoptedNuisances& adopted, bool is_far_off,
-                  RefitFrom from = RefitFrom::kFirstOrder, const EffectRefit* without = nullptr,
-                  double hopeless_cost = std::numeric_limits<double>::infinity());
+// alone, so that the baseline is compared at its best too. A failed fit gives a message. Refits of
+// one baseline may run in several threads. Throws Interrupted.
+EffectRefit Refit(const RefitSetting& setting, const ScoredVariant* effect,
+                  const RefitOptions& options = {});
 
 // The same fit from these values of the problem's parameters, at which another fit of the same
 // model has ended: one that had not converged, or one beside other nuisances or with a further
-// effect. Values beyond the bounds of the parameters are moved to them.
-EffectRefit RefitFromValues(const BaselineModel& baseline, const ScoredVariant* effect,
-                            const AdoptedNuisances& adopted, const Eigen::VectorXd& values,
+// effect. Values beyond the bounds of the parameters are moved to them. `hopeless_cost`: as in
+// RefitOptions.
+EffectRefit RefitFromValues(const RefitSetting& setting, const ScoredVariant* effect,
+                            const Eigen::VectorXd& values,
                             double hopeless_cost = std::numeric_limits<double>::infinity());
 
 // Continues a fit that has not converged from where it has ended, as long as it gains and its cost
 // does not exceed `hopeless_cost`, within the budget of one effect (RefitThresholds::
 // most_of_effect). `predictions`: those that were made for this effect before this fit. A fit that
 // cannot be continued stays as it is. Throws Interrupted.
-EffectRefit ContinueWithinBudget(const BaselineModel& baseline, const ScoredVariant* effect,
-                                 const AdoptedNuisances& adopted, EffectRefit refit,
+EffectRefit ContinueWithinBudget(const RefitSetting& setting, const ScoredVariant* effect,
+                                 EffectRefit refit,
                                  double hopeless_cost = std::numeric_limits<double>::infinity(),
                                  int predictions = 0);
 
-// The refit beside other nuisances, without a new fit: it is settled from where it is with the
-// Jacobian that it has, which takes a few predictions without derivatives. Its estimates stay those
-// of its fit. A model that cannot be predicted there gives a message.
-EffectRefit SettledBeside(const BaselineModel& baseline, const ScoredVariant& effect,
-                          const AdoptedNuisances& adopted, EffectRefit refit);
+// The refit without an effect, continued if it has not converged (ContinueWithinBudget). Throws
+// Interrupted.
+EffectRefit RefitWithout(const RefitSetting& setting);
+
+// A refit beside other nuisances, at the parameters that were best for the fitted frames.
+struct MovedRefit {
+  EffectRefit refit;
+  // The log evidence that the best change of its parameters would gain, to first order.
+  double gain_in_reach = 0;
+};
+// Moves a refit there; nothing is predicted. Its estimates stay those of its fit. `noise`: in which
+// the gain is measured.
+MovedRefit MovedBeside(const RefitSetting& setting, const ScoredVariant& effect, EffectRefit refit,
+                       const NoiseLevel& noise);
+
+// As MovedBeside(), and settled from there with the Jacobian that the refit has, which takes a few
+// predictions without derivatives.
+EffectRefit SettledBeside(const RefitSetting& setting, const ScoredVariant& effect,
+                          EffectRefit refit);
 
 }  // namespace lacuna
 

@@ -65,6 +65,9 @@ Prediction FittedPart(const LinearisedMisfit& misfit) {
     const Eigen::Index rows = series * std::count(part.fitted.begin(), part.fitted.end(), 1);
     for (Eigen::Index row = 0; row < rows; ++row)
       prediction.before.push_back(row < series ? -1 : first + row - series);
+    for (Eigen::Index row = 0; row < part.layout.Rows(); ++row)
+      prediction.unobserved += part.fitted[static_cast<size_t>(row / series)] &&
+                               part.layout.count[static_cast<size_t>(row)] == 0;
   }
   return prediction;
 }
@@ -264,8 +267,7 @@ ExtendedFit ExtendedProblem::Fit(const std::vector<CalibratedParameter>& paramet
   int evaluations = 0;
   const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
     const Prediction prediction = Predict(at, with_jacobian, &memory);
-    progress->Report(++evaluations,
-                     prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
+    progress->Report(++evaluations, prediction.usable ? RootMeanSquare(prediction) : std::nan(""));
     return prediction;
   };
   progress->Begin(stage, 0);

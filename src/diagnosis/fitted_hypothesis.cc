@@ -172,14 +172,14 @@ Eigen::VectorXd WhitenedResidual(const FittedHypothesis& hypothesis, const Noise
   return residual + columns * FitAdopted(hypothesis, residual, columns, noise).change;
 }
 
-double RmsOverSigma(const Eigen::VectorXd& residual, const LinearisedMisfit& misfit) {
-  const Eigen::VectorXd white = WhitenedRows(residual, misfit, 0, false);
-  const Eigen::Index observed = std::max<Eigen::Index>(1, ObservedRows(misfit));
-  return std::sqrt(white.squaredNorm() / static_cast<double>(observed));
-}
-
 double RmsOverSigma(const FittedHypothesis& hypothesis) {
   return RmsOverSigma(hypothesis.residual, hypothesis.misfit);
+}
+
+double FirstOrderGain(const CalibrationProblem& problem, const Settled& at,
+                      const NoiseLevel& noise) {
+  return BestNear(at.hypothesis, problem.parameters(), at.values, noise, /*fitted_only=*/false)
+      .gain;
 }
 
 Settled Settle(const CalibrationProblem& problem, Settled start, const AdoptedNuisances& adopted,

@@ -39,9 +39,8 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
 // the adopted nuisances at their best amounts.
 Eigen::VectorXd WhitenedResidual(const FittedHypothesis& hypothesis, const NoiseLevel& noise);
 
-// The rms of a residual over all observed rows, over σ; that of a hypothesis, with its adopted
-// nuisances at their best amounts.
-double RmsOverSigma(const Eigen::VectorXd& residual, const LinearisedMisfit& misfit);
+// The rms of the residual over all observed rows, over σ, with the adopted nuisances at their best
+// amounts.
 double RmsOverSigma(const FittedHypothesis& hypothesis);
 
 // The model at `values`, with the residuals between the same points as in `correspondences`. Given
@@ -58,6 +57,11 @@ struct Settled {
   Eigen::VectorXd values;
   FittedHypothesis hypothesis;
 };
+
+// The log evidence of all frames that the best change of the parameters within their bounds would
+// gain, to first order.
+double FirstOrderGain(const CalibrationProblem& problem, const Settled& at,
+                      const NoiseLevel& noise);
 
 // The hypothesis at the best parameters for all frames or for those that were fitted, by
 // Gauss–Newton steps from `start`. The steps are small, so the Jacobian is kept.

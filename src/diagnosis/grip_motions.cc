@@ -99,6 +99,19 @@ GripMotions MakeGripMotions(const CalibrationProblem& problem) {
   return motions;
 }
 
+LinearisedWithGrips LineariseWithGrips(const CalibrationProblem& problem,
+                                       const Eigen::VectorXd& values,
+                                       std::vector<MisfitDirection> directions) {
+  LinearisedWithGrips linearised;
+  linearised.grips = MakeGripMotions(problem);
+  linearised.parameters = static_cast<Eigen::Index>(problem.parameters().size());
+  linearised.directions = static_cast<Eigen::Index>(directions.size());
+  const std::vector<MisfitDirection>& of_grips = linearised.grips.directions;
+  directions.insert(directions.end(), of_grips.begin(), of_grips.end());
+  linearised.misfit = problem.Linearise(values, /*with_jacobian=*/true, directions);
+  return linearised;
+}
+
 const RecordedGrip* RecordedAs(const Recording& recording, size_t grip) {
   const size_t fixed = recording.object.fixed.size();  // the model has these grips first
   return grip < fixed || grip - fixed >= recording.object.grips.size()

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "prediction/misfit_direction.h"
 
 namespace lacuna {
 
@@ -50,6 +51,27 @@ struct GripMotions {
 
 // The motions of the grips of the first recording's model.
 GripMotions MakeGripMotions(const CalibrationProblem& problem);
+
+// The misfit of a problem with its derivatives with respect to the parameters, to further
+// directions and to the motions of the grips. Its Jacobian has these columns in this order.
+struct LinearisedWithGrips {
+  GripMotions grips;  // with the forces and moments of the simulation
+  LinearisedMisfit misfit;
+  Eigen::Index parameters = 0, directions = 0;  // numbers of columns
+
+  // Changes of the rows, m per unit of the direction. The misfit must be usable.
+  Eigen::MatrixXd OfDirections() const {
+    return misfit.jacobian.middleCols(parameters, directions);
+  }
+  Eigen::MatrixXd OfGrips() const {  // by grips.directions
+    return misfit.jacobian.rightCols(misfit.jacobian.cols() - parameters - directions);
+  }
+};
+// One tangent-linear simulation along the motion at these values of the problem's parameters. A
+// motion that cannot be predicted gives a misfit that is not usable. Throws Interrupted.
+LinearisedWithGrips LineariseWithGrips(const CalibrationProblem& problem,
+                                       const Eigen::VectorXd& values,
+                                       std::vector<MisfitDirection> directions);
 
 // How grip `grip` of the model was recorded; null for one that does not move.
 const RecordedGrip* RecordedAs(const Recording& recording, size_t grip);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "diagnosis/thresholds.h"
 
@@ -22,6 +23,12 @@ double ExpectedHeldOut(const WeighedColumns& weighed, const std::vector<int>& ch
 }
 
 }  // namespace
+
+std::vector<int> IndexRange(Eigen::Index first, Eigen::Index count) {
+  std::vector<int> range(static_cast<size_t>(count));
+  std::iota(range.begin(), range.end(), static_cast<int>(first));
+  return range;
+}
 
 std::vector<int> Joined(std::vector<int> a, const std::vector<int>& b) {
   a.insert(a.end(), b.begin(), b.end());

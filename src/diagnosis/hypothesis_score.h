@@ -42,6 +42,9 @@ struct WeighedColumns {
 WeighedColumns WeighColumns(const LinearisedMisfit& misfit, const Eigen::MatrixXd& columns,
                             const std::vector<LinearPrior>& priors, double correlation_time);
 
+// `count` indices from `first`.
+std::vector<int> IndexRange(Eigen::Index first, Eigen::Index count);
+
 // The indices of a, then those of b.
 std::vector<int> Joined(std::vector<int> a, const std::vector<int>& b);
 

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "diagnosis/refit_reach.h"
 #include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
+#include "effects/gravity.h"
 
 namespace lacuna {
 namespace {
@@ -21,6 +23,22 @@ void ReplaceMaterial(const std::shared_ptr<const Effect>& law, PredictionStudy* 
       const std::string& name = before->Card().parameters[index].name;
       index = ParameterIndex(law->Card(), name);
       CHECK_GE(index, 0) << law->Card().type << " has no " << name;
+    }
+  }
+}
+
+// Gives added masses the gravity of the model: the last effect, or all effects if that is gravity
+// itself and not at its null value. A mass whose gravity is not that of the model before keeps it.
+// `before`: the effects without the last one.
+void LetMassesFall(const EffectList& before, EffectList* effects) {
+  const std::optional<Eigen::Vector3d> added = GravityOf({effects->back()});
+  const Eigen::Vector3d known = GravityOf(before).value_or(Eigen::Vector3d::Zero());
+  if (!added) {
+    effects->back() = WithGravitySetting(effects->back(), known);
+  } else if (!added->isZero(0)) {
+    for (auto& effect : *effects) {
+      const std::optional<Eigen::Vector3d> own = GravitySettingOf(*effect);
+      if (own && IsSameGravity(*own, known)) effect = WithGravitySetting(effect, *added);
     }
   }
 }
@@ -46,8 +64,8 @@ void KeepPlausible(const ParameterCard& plausible, CalibratedParameter* prior) {
   const double range = plausible.plausible_max - plausible.plausible_min;
   if (plausible.dimension.SameAs(kAngle)) {
     // Angles are periodic, so a range of fixed ends would exclude some neighbouring directions.
-    prior->min = std::max(prior->min, prior->start - range);
-    prior->max = std::min(prior->max, prior->start + range);
+    SetBounds(std::max(prior->min, prior->start - range),
+              std::min(prior->max, prior->start + range), plausible.bounds, prior);
     return;
   }
   const double margin = kThresholds.refit.range_margin * range;
@@ -57,15 +75,14 @@ void KeepPlausible(const ParameterCard& plausible, CalibratedParameter* prior) {
                                  ? kThresholds.refit.log_range_share * plausible.plausible_min
                                  : plausible.plausible_min - margin);
   const double high = std::max(prior->start, plausible.plausible_max + margin);
-  prior->min = std::max(prior->min, low);
-  prior->max = std::min(prior->max, high);
+  SetBounds(std::max(prior->min, low), std::min(prior->max, high), plausible.bounds, prior);
 }
 
 // Gives a parameter the mean and the standard deviation of a uniform distribution over a range, on
 // the scale on which it is fitted.
-void KeepWithin(const CandidateEffect::Range& range, CalibratedParameter* prior) {
-  prior->min = std::min(range.min, prior->start);
-  prior->max = std::max(range.max, prior->start);
+void KeepWithin(const CandidateEffect::Range& range, const Bounds& of_card,
+                CalibratedParameter* prior) {
+  SetBounds(std::min(range.min, prior->start), std::max(range.max, prior->start), of_card, prior);
   if (prior->log_scale) {
     prior->prior_mean = std::sqrt(range.min * range.max);
     prior->prior_deviation = prior->typical = std::log(range.max / range.min) / std::sqrt(12.0);
@@ -79,10 +96,12 @@ void KeepWithin(const CandidateEffect::Range& range, CalibratedParameter* prior)
 
 PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffect& candidate) {
   PredictionStudy with = study;
-  if (candidate.replaces_material)
+  if (candidate.replaces_material) {
     ReplaceMaterial(candidate.effect, &with);
-  else
-    with.effects.push_back(candidate.effect);
+    return with;
+  }
+  with.effects.push_back(candidate.effect);
+  LetMassesFall(study.effects, &with.effects);
   return with;
 }
 
@@ -104,13 +123,13 @@ PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& sc
         prior.prior_deviation = PlausibleScale(card);
       }
       if (const auto known = own.known.find(card.name); known != own.known.end())
-        KeepWithin(known->second, &prior);
+        KeepWithin(known->second, card.bounds, &prior);
       else
         KeepPlausible(card, &prior);
       with.fitted.push_back(parameter);
       continue;
     }
-    // A modulus that the effect shares with the material keeps the same value as the material's.
+    // A parameter that the added effect shares with the model keeps one value.
     for (ModelParameter& known : with.fitted)
       if (known.places.front() == parameter.places.front()) known.places = parameter.places;
   }

@@ -5,7 +5,7 @@
 #ifndef LACUNA_DIAGNOSIS_MODEL_CHANGE_H_
 #define LACUNA_DIAGNOSIS_MODEL_CHANGE_H_
 
-#include "diagnosis/candidates.h"
+#include "diagnosis/candidate_effect.h"
 #include "diagnosis/scored_effect.h"
 #include "prediction/prediction_study.h"
 
@@ -13,6 +13,8 @@ namespace lacuna {
 
 // The study with the candidate's own effect, none of whose parameters is fitted. An elasticity law
 // replaces the law of the model and takes over its moduli, including those that are fitted.
+// Masses that are added to the body fall with the gravity of the model, also with one that is
+// added, except masses that had a gravity of their own in a model without it.
 PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffect& candidate);
 
 // The study with the effect at the size that first order predicts (a pilot: at its pilot setting).

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/parallel.h"
+#include "calibration/side_by_side.h"
 #include "diagnosis/thresholds.h"
 
 namespace lacuna {
@@ -77,12 +77,11 @@ std::vector<NuisanceTrial> NuisanceControls() {
 
 namespace {
 
-// Each is simulated by itself, side by side with the others.
 std::vector<NuisanceCandidate> Made(const std::vector<const NuisanceEntry*>& entries,
                                     const NuisanceContext& context,
                                     const std::vector<NuisanceCandidate>& known) {
   std::vector<std::optional<NuisanceCandidate>> made(entries.size());
-  ParallelFor(static_cast<int64_t>(entries.size()), 1, [&](int64_t k) {
+  ForEachStudy(context.problem, static_cast<int64_t>(entries.size()), [&](int64_t k) {
     const size_t at = static_cast<size_t>(k);
     const auto same = std::find_if(known.begin(), known.end(), [&](const NuisanceCandidate& other) {
       return other.card.name == entries[at]->card.name;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "calibration/mesh_limit.h"
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance.h"
 
@@ -26,9 +27,8 @@ struct NuisanceContext {
   const Eigen::VectorXd& values;   // the fitted values of problem.parameters()
   const LinearisedMisfit& misfit;  // at `values`, with the Jacobian of the parameters
   const GripMotions& grips;
-  const Eigen::MatrixXd& grip_columns;  // changes of the rows by grips.directions
-  // The values with infinitely fine elements, as FindKnownErrors() has found them; empty: unknown.
-  Eigen::VectorXd at_mesh_limit = {};
+  const Eigen::MatrixXd& grip_columns;    // changes of the rows by grips.directions
+  const OtherMesh* other_mesh = nullptr;  // as in MakeOtherMesh(); null: unknown
 };
 
 // One recording of that model, with three frames or more.

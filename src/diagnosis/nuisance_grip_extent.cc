@@ -14,6 +14,7 @@
 
 #include "analysis/linear_evidence.h"
 #include "calibration/linear_misfit.h"
+#include "calibration/listed_nodes.h"
 #include "calibration/parameter_response.h"
 #include "core/error.h"
 #include "diagnosis/nuisance_catalogue.h"
@@ -87,26 +88,6 @@ Eigen::Matrix3Xd WithLongerGrip(const CalibrationProblem& problem, size_t grip, 
   for (size_t other = 0; other < grips.size(); ++other)
     if (other != grip) share(grips[other].nodes).setZero();
   return nodes + distance * inwards * share;
-}
-
-// The study with all regions as lists of their nodes, so that they are the same nodes of a mesh
-// that was moved.
-PredictionStudy WithListedNodes(const CalibrationProblem& problem) {
-  const Eigen::Matrix3Xd& nodes = problem.body()->mesh.nodes;
-  const auto list = [&](Region* region) {
-    region->shape = NodeRegion{SelectNodes(*region, nodes), {}};
-  };
-  PredictionStudy study = problem.WithEstimatedNoise();
-  for (PredictedRecording& item : study.recordings) {
-    RecordedObject& object = item.recording.object;
-    for (RecordedSupport& support : object.fixed) list(&support.region);
-    for (RecordedGrip& grip : object.grips)
-      if (grip.motion != GripMotion::kFollowsScan) list(&grip.region);
-    for (MeasuredForce& force : object.forces)
-      if (force.region) list(&*force.region);
-    if (item.hold) list(&item.hold->region);
-  }
-  return study;
 }
 
 // The residual of the model with the mesh that a longer grip leaves, m. Empty where it cannot be

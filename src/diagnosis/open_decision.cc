@@ -9,8 +9,12 @@
 #include "diagnosis/combinations.h"
 #include "diagnosis/decision_maker.h"
 #include "diagnosis/decision_rules.h"
+#include "diagnosis/nuisance_refits.h"
 #include "diagnosis/pair_refit.h"
-#include "diagnosis/thresholds.h"
+#include "diagnosis/rank_effects.h"
+#include "diagnosis/refit_comparison.h"
+#include "diagnosis/refits.h"
+#include "diagnosis/rival_pairs.h"
 
 namespace lacuna {
 namespace {
@@ -35,34 +39,29 @@ std::vector<size_t> WithoutRefit(const Decision& decision, const RefittedRanking
   return effects;
 }
 
-bool IsFitted(const std::vector<FittedPair>& pairs, const std::string& a, const std::string& b) {
-  return std::any_of(pairs.begin(), pairs.end(),
-                     [&](const FittedPair& one) { return one.IsOf(a, b); });
-}
-
 // Ranks everything anew along the motion of the refit with this effect. Returns whether there is
 // such a refit.
 bool RankAlongRefit(const std::string& effect, OpenDecision* open) {
-  RefittedRanking& ranked = *open->ranked;
+  RefittedRanking& ranked = open->ranked;
   const std::optional<size_t> k = ranked.FindUsable(effect);
   if (!k) return false;
   LookAlong(open->context, effect,
             RankAlong(open->context.model, ranked.effects[*k].scored, ranked.refits[*k],
-                      open->without, DecidedBase{open->context.ranking, open->noise->level}),
+                      open->without, DecidedBase{open->context.ranking, open->noise.level}),
             &ranked);
-  *open->noise = WeighRefits(open->context, &ranked);
+  open->noise = WeighRefits(open->context, &ranked);
   return true;
 }
 
 // Fits a pair of which one effect has a usable refit, beside the columns along the motion of a
 // refit, and decides again. A pair that cannot be fitted is no hypothesis any more.
 void AddPair(const PairToFit& wanted, OpenDecision* open) {
-  RefittedRanking& ranked = *open->ranked;
+  RefittedRanking& ranked = open->ranked;
   const std::optional<size_t> k = ranked.FindUsable(wanted.first);
   CHECK(k && ranked.along);
   std::optional<FittedPair> pair =
       FitPair(open->context.model, ranked.effects[*k].scored, ranked.refits[*k], wanted.further,
-              *ranked.along, wanted.first == ranked.along_type);
+              *ranked.along->ranking, wanted.first == ranked.along->type);
   if (!pair) {
     ranked.failed_pairs.push_back({wanted.first, wanted.further});
     open->DecideAgain();
@@ -70,9 +69,9 @@ void AddPair(const PairToFit& wanted, OpenDecision* open) {
   }
   // With the help of the second effect, the fit may have found better parameters for the first one,
   // alone, too. The pair must not count that for the second effect.
-  RefitAgain(open->context, *k, pair->values_of_first, open->noise->level, &ranked);
+  RefitAgain(open->context, *k, pair->values_of_first, open->noise.level, &ranked);
   ranked.pairs.push_back(*std::move(pair));
-  *open->noise = WeighRefits(open->context, &ranked);
+  open->noise = WeighRefits(open->context, &ranked);
   open->DecideAgain();
 }
 
@@ -80,28 +79,28 @@ void AddPair(const PairToFit& wanted, OpenDecision* open) {
 
 void OpenDecision::DecideAgain() {
   for (;;) {
-    WeighNuisances(*ranked, *noise, &diagnosis->nuisances);
-    diagnosis->decision_input = MakeDecisionInput(context, *ranked, *noise, *diagnosis);
-    decision = Decide(diagnosis->decision_input);
-    const int before = ranked->count;
-    RefitAll(context, WithoutRefit(decision, *ranked), ranked);
-    if (ranked->count == before) return;
-    *noise = WeighRefits(context, ranked);
+    WeighNuisances(ranked, noise, &nuisances);
+    input = MakeDecisionInput(context, ranked, noise, nuisances);
+    decision = Decide(input);
+    const int before = ranked.count;
+    RefitAll(context, WithoutRefit(decision, ranked), &ranked);
+    if (ranked.count == before) return;
+    noise = WeighRefits(context, &ranked);
   }
 }
 
 void RankAlongBest(OpenDecision* open) {
-  const RefittedRanking& ranked = *open->ranked;
+  const RefittedRanking& ranked = open->ranked;
   for (int step = 0; step < kMostSteps; ++step) {
     const HypothesisProbability best = open->Best();
     if (best.kind != Kind::kEffect && best.kind != Kind::kPair) break;
-    if (!ranked.along || !best.Contains(ranked.along_type)) {
+    if (!ranked.along || !best.Contains(ranked.along->type)) {
       if (!RankAlongRefit(best.names.front(), open)) break;
       open->DecideAgain();
     } else if (best.kind == Kind::kPair && !IsFitted(ranked.pairs, best.names[0], best.names[1])) {
-      const bool is_first = best.names[0] == ranked.along_type;
+      const bool is_first = best.names[0] == ranked.along->type;
       const std::optional<PairToFit> pair =
-          FromARefit({ranked.along_type, best.names[is_first ? 1 : 0]}, ranked);
+          FromARefit({ranked.along->type, best.names[is_first ? 1 : 0]}, ranked);
       if (!pair) break;
       AddPair(*pair, open);
     } else {
@@ -111,11 +110,11 @@ void RankAlongBest(OpenDecision* open) {
 }
 
 void FitRivalPairs(OpenDecision* open) {
-  const RefittedRanking& ranked = *open->ranked;
+  const RefittedRanking& ranked = open->ranked;
   for (int fits = 0; ranked.along && fits <= kMostRivalPairs; ++fits) {
     const HypothesisProbability best = open->Best();
     if (best.kind != Kind::kPair) break;
-    const DecisionInput& input = open->diagnosis->decision_input;
+    const DecisionInput& input = open->input;
     std::vector<PairToFit> next;
     if (!IsFitted(ranked.pairs, best.names[0], best.names[1])) {
       // Another pair has become the most probable one.
@@ -132,45 +131,6 @@ void FitRivalPairs(OpenDecision* open) {
     if (next.empty()) break;
     AddPair(next.front(), open);
   }
-}
-
-std::optional<PairToFit> FromARefit(PairToFit pair, const RefittedRanking& ranked) {
-  if (!ranked.FindUsable(pair.first)) std::swap(pair.first, pair.further);
-  if (!ranked.FindUsable(pair.first)) return std::nullopt;
-  return pair;
-}
-
-std::vector<PairToFit> RivalsOf(const HypothesisProbability& pair, const RefittedRanking& ranked,
-                                const std::map<std::string, EffectFamily>& families) {
-  const auto first_order = [&](const std::string& type) {
-    const ScoredEffect* effect = ranked.along->Find(type);
-    return effect != nullptr ? effect->score.evidence : 0.0;
-  };
-  const auto alone = [&](const std::string& type) {
-    const std::optional<size_t> k = ranked.FindUsable(type);
-    return k ? ranked.effects[*k].evidence : 0.0;
-  };
-  std::vector<PairToFit> rivals;
-  for (const size_t at : {0u, 1u}) {
-    const std::string &replaced = pair.names[at], &kept = pair.names[1 - at];
-    const EffectFamily family = FamilyOf(families, replaced);
-    if (family == EffectFamily::kOther) continue;
-    for (const RankedEffect& other : ranked.effects) {
-      const std::string& type = other.scored.candidate.type;
-      if (pair.Contains(type) || FamilyOf(families, type) != family ||
-          IsFitted(ranked.pairs, kept, type))
-        continue;
-      if (kept == ranked.along_type) {
-        if (first_order(type) >= kThresholds.refit.least_evidence)
-          rivals.push_back({kept, type, first_order(replaced) - first_order(type)});
-      } else if (other.HasUsableRefit() && other.predicts) {
-        rivals.push_back({type, kept, alone(replaced) - alone(type)});
-      }
-    }
-  }
-  std::stable_sort(rivals.begin(), rivals.end(),
-                   [](const PairToFit& a, const PairToFit& b) { return a.lost < b.lost; });
-  return rivals;
 }
 
 }  // namespace lacuna

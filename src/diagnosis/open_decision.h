@@ -3,36 +3,28 @@
 #ifndef LACUNA_DIAGNOSIS_OPEN_DECISION_H_
 #define LACUNA_DIAGNOSIS_OPEN_DECISION_H_
 
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "diagnosis/decision.h"
-#include "diagnosis/diagnosis_result.h"
-#include "diagnosis/refits.h"
-#include "record/effect_card.h"
+#include "diagnosis/decision_input.h"
+#include "diagnosis/refitted_ranking.h"
+#include "diagnosis/scored_effect.h"
+#include "diagnosis/variant_refit.h"
 
 namespace lacuna {
 
-// Two effects that may be missing together. A pair is fitted from the refit of the first one.
-struct PairToFit {
-  std::string first, further;
-  // Of a rival of another pair: the evidence that the replacement of one effect costs, to first
-  // order beside the first effect where that stays, else between the refits of the two first
-  // effects alone.
-  double lost = 0;
-};
-
-// A decision that further fits may still change, with everything from which it is made. References
-// and pointers must outlive it.
+// A decision that further fits may still change, with everything from which it is made. The
+// references must outlive it.
 struct OpenDecision {
   const RefitContext& context;
   const std::vector<std::string>& without;  // types of effects that are not tried
-  RefittedRanking* ranked;
-  RefitNoise* noise;
-  Diagnosis* diagnosis;  // its decision_input and nuisances are set
-  Decision decision;
+  RefittedRanking ranked;
+  RefitNoise noise;  // with which `ranked` has been weighed
+  std::vector<ScoredNuisance> nuisances;
+  // Set by DecideAgain().
+  DecisionInput input = {};
+  Decision decision = {};
 
   const HypothesisProbability& Best() const { return decision.record.probabilities.front(); }
   // Decides upon what has been fitted, and refits what the decision would state without a refit,
@@ -48,17 +40,6 @@ void RankAlongBest(OpenDecision* open);
 // first-order value of a pair is kept low on purpose (combinations.cc), so that a fitted pair would
 // have an advantage over them.
 void FitRivalPairs(OpenDecision* open);
-
-// The pair with an effect first that has a usable refit; nothing if neither has one: such a pair
-// cannot be fitted, but stays a hypothesis to first order.
-std::optional<PairToFit> FromARefit(PairToFit pair, const RefittedRanking& ranked);
-
-// The pairs in which another effect of its family replaces one effect of `pair`, and which have not
-// been fitted, by what the replacement costs, the least first. An effect that the held-out frames
-// refute may become the further one of a pair, which is judged by its own prediction, but not the
-// first one. `ranked` has columns along the motion of a refit.
-std::vector<PairToFit> RivalsOf(const HypothesisProbability& pair, const RefittedRanking& ranked,
-                                const std::map<std::string, EffectFamily>& families);
 
 }  // namespace lacuna
 

@@ -6,6 +6,7 @@
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/variant_refit.h"
 
 namespace lacuna {
 namespace {

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/effect_ranking.h"
 #include "diagnosis/effect_refit.h"
 #include "diagnosis/extended_problem.h"
-#include "diagnosis/refits.h"
+#include "diagnosis/rank_effects.h"
+#include "diagnosis/refitted_ranking.h"
 
 namespace lacuna {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
-#include "diagnosis/candidates.h"
+#include "diagnosis/candidate_effect.h"
 #include "record/model_errors.h"
 
 namespace lacuna {

@@ -12,17 +12,10 @@ namespace lacuna {
 namespace {
 
 // What remains of a column after a projection is rounding below this share of its square.
-constexpr double kRounding = 1e-9;
+constexpr double kProjectionRounding = 1e-9;
 
 bool IsForce(const WeighedHypothesis& hypothesis) {
   return hypothesis.kind == HypothesisKind::kUnknownForce && !hypothesis.columns.empty();
-}
-
-double LogMeanExp(const std::vector<double>& values) {
-  const double largest = *std::max_element(values.begin(), values.end());
-  double sum = 0;
-  for (const double value : values) sum += std::exp(value - largest);
-  return largest + std::log(sum / static_cast<double>(values.size()));
 }
 
 // (A + diag(d))⁻¹ of a positive semidefinite A, scaled to a unit diagonal for its accuracy.
@@ -59,7 +52,7 @@ ProjectedHypotheses::ProjectedHypotheses(const HypothesisSpace& space,
   weights_ = inverse_ * model.products()(taken_, Eigen::all);
   products_ = model.products() - model.products()(Eigen::all, taken_) * weights_;
   for (Eigen::Index k = 0; k < products_.cols(); ++k)
-    if (products_(k, k) < kRounding * model.products()(k, k)) {
+    if (products_(k, k) < kProjectionRounding * model.products()(k, k)) {
       products_.row(k).setZero();
       products_.col(k).setZero();
     }
@@ -70,7 +63,7 @@ ProjectedHypotheses::ProjectedHypotheses(const HypothesisSpace& space,
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
         Eigen::MatrixXd(products_(hypothesis.columns, hypothesis.columns)));
     // In ascending order.
-    const double least = kRounding * std::max(0.0, eigen.eigenvalues().tail<1>()[0]);
+    const double least = kProjectionRounding * std::max(0.0, eigen.eigenvalues().tail<1>()[0]);
     const Eigen::Index rank = (eigen.eigenvalues().array() > least).count();
     force_ = {eigen.eigenvectors().rightCols(rank), eigen.eigenvalues().tail(rank)};
   }

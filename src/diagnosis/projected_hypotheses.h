@@ -66,6 +66,10 @@ class ProjectedHypotheses {
   // The logarithm of the Bayes factor of each hypothesis of the space against the taken columns
   // alone, from t'. 0 for a hypothesis whose columns are taken.
   Eigen::VectorXd LogBayesFactors(const Eigen::VectorXd& projected) const;
+  // The same for the residual of the space itself.
+  Eigen::VectorXd FactorsOfResidual() const {
+    return LogBayesFactors(Project(space_.model.toward()));
+  }
   // The amounts with the largest posterior density of a hypothesis that is not an unknown force,
   // and their covariance matrix.
   struct Amounts {

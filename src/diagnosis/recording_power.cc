@@ -18,7 +18,7 @@ using Kind = HypothesisProbability::Kind;
 
 // Simulated recordings for each truth, and draws of noise from which the tests of adequacy take
 // their distributions. More: finer frequencies; 200 give them to within 0.035.
-constexpr int kDraws = 200;
+constexpr int kSimulations = 200;
 
 // The statistics of a test of adequacy under noise, beside one variant.
 struct NullOfVariant {
@@ -60,7 +60,7 @@ class SimulatedDecisions {
         space_(ProjectedHypotheses(input.baseline).Marginal()),
         beside_nothing_(space_) {
     const NoiseDraws noise(space_);
-    for (int k = 0; k < kDraws; ++k)
+    for (int k = 0; k < kSimulations; ++k)
       draws_.push_back(noise.Draw(input.seed + 2, static_cast<uint64_t>(k)));
   }
 
@@ -108,7 +108,7 @@ class SimulatedDecisions {
     if (variant >= 0) own.columns = space_.hypotheses[static_cast<size_t>(variant)].columns;
     null.projected = std::make_unique<ProjectedHypotheses>(space_, own.columns);
     std::vector<double> drawn[3];
-    for (int k = 0; k < kDraws; ++k) {
+    for (int k = 0; k < kSimulations; ++k) {
       own.amounts = PriorAmounts(space_, own.columns, input_.seed + 3, static_cast<uint64_t>(k));
       const AdequacyStatistics left =
           MeasureAdequacy(*null.projected, null.projected->ProjectAll(Draw(own, k)));
@@ -118,7 +118,7 @@ class SimulatedDecisions {
     }
     const auto quantile = [](std::vector<double>* values) {
       std::sort(values->begin(), values->end());
-      return (*values)[static_cast<size_t>((1 - kAdequacyLevel / 3) * kDraws)];
+      return (*values)[static_cast<size_t>((1 - kAdequacyLevel / 3) * kSimulations)];
     };
     null.unknown_force = quantile(&drawn[0]);
     null.further = quantile(&drawn[1]);
@@ -140,9 +140,9 @@ RecordedPower PowerOf(const DecisionInput& input, const FoundEffect& effect,
   RecordedPower power;
   if (!truth.empty()) power.truth = {truth};
   std::map<std::string, int> wrong;
-  for (int k = 0; k < kDraws; ++k) {
+  for (int k = 0; k < kSimulations; ++k) {
     const auto outcome = decisions->Decide(decisions->Draw(effect, k));
-    constexpr double kShare = 1.0 / kDraws;
+    constexpr double kShare = 1.0 / kSimulations;
     if (outcome.is_unknown_left)
       power.unknown += kShare;
     else if (outcome.names.size() > 1 || (outcome.names.empty() && !truth.empty()))

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "diagnosis/candidates.h"
+#include "diagnosis/candidate_effect.h"
 
 namespace lacuna {
 

@@ -17,7 +17,7 @@
 namespace lacuna {
 
 // Of a calibration only the parts that a refit uses are kept: whether it is usable, its message,
-// parameters, estimates and rms.
+// parameters, estimates, number of predictions, rms and cost.
 class RefitStore {
  public:
   // Reads `file` if it has the same origin (the fit and the options of the diagnosis). Otherwise,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "calibration/mesh_limit.h"
 #include "diagnosis/nuisance.h"
 #include "diagnosis/pilot_hypotheses.h"
 
@@ -19,8 +20,8 @@ namespace lacuna {
 struct SceneColumns {
   std::vector<NuisanceCandidate> nuisances;  // those with NuisanceCard::is_shared_in_scene
   std::optional<PilotHypotheses> pilots;     // empty: not simulated yet
-  // The fitted values with infinitely fine elements, where the fit has found them; empty: unknown.
-  Eigen::VectorXd at_mesh_limit = {};
+  // What the fit has found about the mesh; empty: nothing.
+  std::optional<OtherMesh> other_mesh = {};
 
   // For the same recordings, simulated with another time step: without the columns of the step, and
   // without the pilots.

@@ -4,7 +4,8 @@
 #include <iterator>
 #include <utility>
 
-#include "diagnosis/effect_ranking.h"
+#include "calibration/calibration_problem.h"
+#include "calibration/linear_misfit.h"
 #include "diagnosis/projected_hypotheses.h"
 
 namespace lacuna {
@@ -12,7 +13,7 @@ namespace lacuna {
 std::vector<ScoredEffect> ScoredBeside(const HypothesisSpace& space,
                                        std::vector<ScoredEffect> effects) {
   const ProjectedHypotheses beside(space);
-  const Eigen::VectorXd factors = beside.LogBayesFactors(beside.Project(space.model.toward()));
+  const Eigen::VectorXd factors = beside.FactorsOfResidual();
   const auto more_evidence = [](const ScoredVariant& a, const ScoredVariant& b) {
     return a.score.evidence > b.score.evidence;
   };
@@ -41,6 +42,17 @@ std::vector<ScoredEffect> ScoredBeside(const HypothesisSpace& space,
   }
   std::stable_sort(effects.begin(), effects.end(), more_evidence);
   return effects;
+}
+
+std::vector<ScoredEffect> ScoredBesideRefit(const FittedHypothesis& baseline,
+                                            const EffectRanking& ranking,
+                                            std::vector<ScoredEffect> effects,
+                                            bool base_has_adopted) {
+  const LinearisedMisfit& misfit = ranking.misfit;
+  if (RmsOverSigma(misfit.residual, misfit) > kFarFromTruth) return effects;
+  return ScoredBeside(SpaceBeside(baseline.misfit, baseline.misfit.jacobian, baseline.priors,
+                                  ranking, {}, ranking.noise, base_has_adopted),
+                      std::move(effects));
 }
 
 }  // namespace lacuna

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "analysis/linear_evidence.h"
-#include "diagnosis/candidates.h"
+#include "diagnosis/candidate_effect.h"
 #include "diagnosis/hypothesis_score.h"
 #include "diagnosis/nuisance.h"
 

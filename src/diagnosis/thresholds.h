@@ -11,7 +11,7 @@
 
 namespace lacuna {
 
-// The first-order ranking of effects and nuisances (effect_ranking.h, hypothesis_score.h).
+// The first-order ranking of effects and nuisances (rank_effects.h, hypothesis_score.h).
 struct RankingThresholds {
   // The size of an effect is detectable if it exceeds so many of its standard deviations. Among
   // some dozens of effects, 5 find the right one in four cases of five.
@@ -29,7 +29,8 @@ struct RankingThresholds {
   int most_adopted_nuisances = 3;
 };
 
-// Which hypotheses are refitted, and how a refit is judged (refits.h, effect_refit.h).
+// Which hypotheses are refitted, and how a refit is judged (refits.h, nuisance_refits.h,
+// effect_refit.h).
 struct RefitThresholds {
   // An effect with less evidence is neither refitted nor looked at again.
   // Higher: faster, an effect that first order underrates is missed. Lower: pointless refits.
@@ -72,9 +73,12 @@ struct RefitThresholds {
   int most_halvings = 3;
   double uncertain_step_evidence = 1;
 
-  // A refit that leaves a larger rms over σ is repeated from another start if the model was far
-  // off. Higher: a refit may stay in a local minimum. Lower: every refit is made twice.
-  double converged_rms = 1.2;
+  // The rms over σ below which a residual counts as noise, so that a refit has found the right
+  // minimum, whether or not its search has converged. If the model was far off, a refit that leaves
+  // more is repeated from another start, and where all refits leave more, the effects are also
+  // ranked over the first frames (early_share).
+  // Higher: a refit may stay in a local minimum. Lower: every refit is made twice.
+  double rms_at_noise = 1.2;
   // A refit is likely to have ended in a local minimum if it gains less than this share of the
   // evidence that first order predicts ...
   // Higher: more repeated refits. Lower: local minima are accepted.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calibration/linear_misfit.h"
+#include "core/parallel.h"
 #include "prediction/replayed_motion.h"
 #include "prediction/smooth_force.h"
 
@@ -77,37 +78,55 @@ Eigen::MatrixXd VisibleComponents(const Eigen::MatrixXd& columns, const Linearis
   return columns * eigen.eigenvectors().rightCols(visible);
 }
 
+// Those of one recording, whose points are `part`, in all rows of the misfit; none where it shows
+// no such force.
+Eigen::MatrixXd ColumnsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                          const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part) {
+  const Eigen::MatrixXd none(misfit.residual.size(), 0);
+  const RecordingModel recording = problem.ModelAt(part.recording, values);
+  if (recording.Markers() == nullptr) return none;
+  const ReplayedMotion motion = Replay(recording, problem.NuisanceOf(part.recording, values));
+  if (!motion.summary.IsUsable()) return none;
+  const double start = motion.states.front().time, end = motion.states.back().time;
+  const std::vector<double>& times = recording.item().recording.times;
+  const auto moving = std::count_if(recording.item().frames.begin(), recording.item().frames.end(),
+                                    [&](int frame) { return times[frame] - motion.delay > start; });
+  if (moving < kFewestFrames) return none;
+  const SmoothForce field = MakeSmoothForce(recording.model(), start, end,
+                                            std::min(kMostKnots, static_cast<int>(moving)));
+  const PredictionOptions options = recording.Options(motion.nuisance);
+  const ReducedResponse response(recording.model(), motion.states, field.Shapes(),
+                                 {.scheme = options.step.scheme, .time_step = options.time_step});
+  if (!response.IsUsable()) return none;
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(misfit.residual.size(), field.amplitudes.size());
+  own.middleRows(part.first_row, part.layout.Rows()) =
+      ResponseOf(recording, motion, field, response) * PriorRoot(field.KnotCount());
+  for (Eigen::Index row = 0; row < part.layout.Rows(); ++row)
+    if (part.layout.count[static_cast<size_t>(row)] == 0) own.row(part.first_row + row).setZero();
+  return VisibleComponents(own, misfit);
+}
+
 }  // namespace
 
 Eigen::MatrixXd UnknownForceColumns(const CalibrationProblem& problem,
                                     const Eigen::VectorXd& values, const LinearisedMisfit& misfit) {
-  Eigen::MatrixXd all(misfit.residual.size(), 0);
-  for (const LinearisedMisfit::Part& part : misfit.parts) {
-    if (!part.IsOfPoints()) continue;
-    const RecordingModel recording = problem.ModelAt(part.recording, values);
-    if (recording.Markers() == nullptr) continue;
-    const ReplayedMotion motion = Replay(recording, problem.NuisanceOf(part.recording, values));
-    if (!motion.summary.IsUsable()) continue;
-    const double start = motion.states.front().time, end = motion.states.back().time;
-    const std::vector<double>& times = recording.item().recording.times;
-    const auto moving =
-        std::count_if(recording.item().frames.begin(), recording.item().frames.end(),
-                      [&](int frame) { return times[frame] - motion.delay > start; });
-    if (moving < kFewestFrames) continue;
-    const SmoothForce field = MakeSmoothForce(recording.model(), start, end,
-                                              std::min(kMostKnots, static_cast<int>(moving)));
-    const PredictionOptions options = recording.Options(motion.nuisance);
-    const ReducedResponse response(recording.model(), motion.states, field.Shapes(),
-                                   {.scheme = options.step.scheme, .time_step = options.time_step});
-    if (!response.IsUsable()) continue;
-    Eigen::MatrixXd own = Eigen::MatrixXd::Zero(misfit.residual.size(), field.amplitudes.size());
-    own.middleRows(part.first_row, part.layout.Rows()) =
-        ResponseOf(recording, motion, field, response) * PriorRoot(field.KnotCount());
-    for (Eigen::Index row = 0; row < part.layout.Rows(); ++row)
-      if (part.layout.count[static_cast<size_t>(row)] == 0) own.row(part.first_row + row).setZero();
-    const Eigen::MatrixXd visible = VisibleComponents(own, misfit);
-    all.conservativeResize(Eigen::NoChange, all.cols() + visible.cols());
-    all.rightCols(visible.cols()) = visible;
+  // Without the parts of load cells: a loop over a single recording leaves the other threads to
+  // the factorisations inside it.
+  std::vector<const LinearisedMisfit::Part*> of_points;
+  for (const LinearisedMisfit::Part& part : misfit.parts)
+    if (part.IsOfPoints()) of_points.push_back(&part);
+  std::vector<Eigen::MatrixXd> visible(of_points.size());
+  ParallelFor(static_cast<int64_t>(visible.size()), 1, [&](int64_t k) {
+    const size_t at = static_cast<size_t>(k);
+    visible[at] = ColumnsOf(problem, values, misfit, *of_points[at]);
+  });
+  Eigen::Index count = 0;
+  for (const Eigen::MatrixXd& columns : visible) count += columns.cols();
+  Eigen::MatrixXd all(misfit.residual.size(), count);
+  Eigen::Index next = 0;
+  for (const Eigen::MatrixXd& columns : visible) {
+    all.middleCols(next, columns.cols()) = columns;
+    next += columns.cols();
   }
   return all;
 }

@@ -33,9 +33,13 @@ VariantRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& ad
   const bool is_far_off = !is_found && RmsOverSigma(without.hypothesis) > kFarFromTruth;
   int predictions = 0;
   const auto has_budget = [&] { return predictions < thresholds.most_of_effect; };
+  const RefitSetting setting{context.model, adopted};
   const auto from = [&](const ScoredVariant& variant, RefitFrom start) {
-    VariantRefit fitted{variant, Refit(context.model, &variant, adopted, is_far_off, start,
-                                       &without, hopeless_cost)};
+    VariantRefit fitted{variant, Refit(setting, &variant,
+                                       {.is_far_off = is_far_off,
+                                        .from = start,
+                                        .without = &without,
+                                        .hopeless_cost = hopeless_cost})};
     predictions += fitted.refit.calibration.predictions;
     return fitted;
   };
@@ -53,8 +57,8 @@ VariantRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& ad
       IsLikelyLocalMinimum(context.ranking, best.refit, without, effect.score))
     keep_better(from(effect, RefitFrom::kFixedSize));
   const int of_others = predictions - best.refit.calibration.predictions;
-  best.refit = ContinueWithinBudget(context.model, &best.variant, adopted, std::move(best.refit),
-                                    hopeless_cost, of_others);
+  best.refit =
+      ContinueWithinBudget(setting, &best.variant, std::move(best.refit), hopeless_cost, of_others);
   return best;
 }
 

@@ -106,5 +106,26 @@ TEST(LinearGaussianModel, RecognisesParallelColumns) {
   EXPECT_LT(model.Collinearity({0}, {1}, {3}, 1), 0.4);
 }
 
+// Values whose exponentials overflow.
+TEST(LogMeanExp, IsTheLogarithmOfTheMean) {
+  EXPECT_NEAR(LogMeanExp({1000, 1000 + std::log(3)}), 1000 + std::log(2), 1e-12);
+  EXPECT_EQ(LogMeanExp({-2000}), -2000);
+}
+
+TEST(AppendColumns, KeepsColumnsAndPriorsInOneOrder) {
+  std::mt19937 random(17);
+  const Eigen::MatrixXd first = Random(kRows, 2, &random), second = Random(kRows, 1, &random);
+  Eigen::MatrixXd columns;
+  std::vector<LinearPrior> priors;
+  AppendColumns(first, {{0, 1}, {0, 2}}, &columns, &priors);
+  AppendColumns({}, {}, &columns, &priors);
+  AppendColumns(second, {{0, 3}}, &columns, &priors);
+  EXPECT_EQ(columns.leftCols(2), first);
+  EXPECT_EQ(columns.rightCols(1), second);
+  ASSERT_EQ(priors.size(), 3u);
+  for (size_t k = 0; k < 3; ++k) EXPECT_EQ(priors[k].deviation, static_cast<double>(k + 1));
+  EXPECT_DEATH(AppendColumns(Random(1, 1, &random), {{0, 1}}, &columns, &priors), "rows");
+}
+
 }  // namespace
 }  // namespace lacuna

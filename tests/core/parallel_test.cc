@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <stdexcept>
 #include <string>
@@ -90,6 +91,31 @@ TEST(Parallel, RunsLoopsOfSeveralCallersAtTheSameTime) {
   }
   for (std::thread& caller : callers) caller.join();
   EXPECT_EQ(sums, std::vector<int64_t>(kCallers, kLoops * 64 * 63 / 2));
+}
+
+// The caller has nothing left to do long before its helper has finished, so that it polls in vain
+// and has to sleep.
+TEST(Parallel, WaitsForAHelperThatTakesLonger) {
+  ThreadCountGuard guard;
+  SetThreadCount(2);
+  const std::thread::id caller = std::this_thread::get_id();
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    std::atomic<bool> has_help = false;
+    std::vector<int> results(2, 0);
+    ParallelFor(2, 1, [&](int64_t i) {
+      if (std::this_thread::get_id() == caller) {
+        // The caller leaves a block to the helper, but does not wait for ever for one.
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+        while (!has_help && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+      } else {
+        has_help = true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+      results[i] = 1 + static_cast<int>(i);
+    });
+    ASSERT_TRUE(has_help);
+    EXPECT_EQ(results, (std::vector<int>{1, 2}));
+  }
 }
 
 TEST(Parallel, DoesNothingForAnEmptyRange) {

@@ -74,7 +74,7 @@ TEST(ProjectedHypotheses, GivesTheBayesFactorsOfTheLinearModels) {
       SyntheticSpace::Noise(1) - 9 * synthetic.Of("drag") - 3 * synthetic.columns.col(0);
   const HypothesisSpace space = synthetic.With(residual);
   const ProjectedHypotheses projected(space);
-  const Eigen::VectorXd found = projected.LogBayesFactors(projected.Project(space.model.toward()));
+  const Eigen::VectorXd found = projected.FactorsOfResidual();
   const LinearGaussianModel model(residual, synthetic.columns, synthetic.priors);
   const double without = model.Fit(space.base, 1).log_evidence;
   for (size_t h = 0; h + 1 < space.hypotheses.size(); ++h) {
@@ -133,8 +133,7 @@ TEST(ProjectedHypotheses, AveragesOverTheWidthsOfAnUnknownForce) {
   const Eigen::VectorXd residual = SyntheticSpace::Noise(2) + 4 * synthetic.unknown.rowwise().sum();
   const HypothesisSpace space = synthetic.With(residual);
   const ProjectedHypotheses projected(space);
-  const double found =
-      projected.LogBayesFactors(projected.Project(space.model.toward())).tail<1>()[0];
+  const double found = projected.FactorsOfResidual().tail<1>()[0];
   double mean = 0;
   const double without = LinearGaussianModel(residual, synthetic.columns, synthetic.priors)
                              .Fit(space.base, 1)
@@ -164,7 +163,7 @@ TEST(ProjectedHypotheses, FindsAForceThatIsSmallBesideGravity) {
   const auto evidence = [&](const Eigen::VectorXd& residual) {
     const HypothesisSpace space = synthetic.With(residual);
     const ProjectedHypotheses projected(space);
-    return projected.LogBayesFactors(projected.Project(space.model.toward())).tail<1>()[0];
+    return projected.FactorsOfResidual().tail<1>()[0];
   };
   const Eigen::VectorXd noise = SyntheticSpace::Noise(2);
   EXPECT_GT(evidence(noise), -5);

@@ -143,6 +143,18 @@ TEST(Candidates, ReachTheVariantsThatDifferInWhatARefitMoves) {
   EXPECT_EQ(share("elastic_support", "on the −z side at x = 45 mm"), 3 / variants);
 }
 
+TEST(Candidates, DoNotIncludeWhatTheModelExcludes) {
+  const TetMesh bar = BoxMesh({0, 0, 0}, {0.08, 0.02, 0.02}, {8, 2, 2});
+  EXPECT_EQ(CandidatesOf(bar, "swelling").size(), 1u);
+  const Body body = MakeBody(bar, 1000);
+  const EffectList effects{
+      MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}}),
+      MakeEffect(
+          Config::Parse("{type: swelling_field, strain: 1 %, field: \"Z/0.02\"}", "a.yaml"))};
+  for (const CandidateEffect& candidate : MakeCandidates({body, effects, 0.001, 1}))
+    EXPECT_NE(candidate.type, "swelling");
+}
+
 TEST(Candidates, HavePlacesAlongABar) {
   const TetMesh bar = BoxMesh({0, 0, 0}, {0.08, 0.02, 0.02}, {8, 2, 2});
   const std::vector<CandidateEffect> masses = CandidatesOf(bar, "attached_mass");

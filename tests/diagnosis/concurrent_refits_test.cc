@@ -42,8 +42,9 @@ TEST(ConcurrentRefits, FindTheSameBitsAsOneAfterTheOther) {
                 fit.parameters)};
   const auto refit = [&](const ScoredEffect& effect) {
     SilentProgress own;
-    return Refit({problem, fit.parameters, misfit, &own}, &effect,
-                 {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0}, false);
+    return Refit({{problem, fit.parameters, misfit, &own},
+                  {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0}},
+                 &effect);
   };
   std::vector<EffectRefit> in_turn, at_once(effects.size());
   for (const ScoredEffect& effect : effects) in_turn.push_back(refit(effect));

@@ -12,6 +12,7 @@
 #include "calibration/calibration_fits.h"
 #include "calibration/linear_misfit.h"
 #include "diagnosis/projected_hypotheses.h"
+#include "diagnosis/rank_effects.h"
 #include "effects/catalogue.h"
 #include "support/held_bar.h"
 #include "support/silent_progress.h"
@@ -20,7 +21,7 @@
 namespace lacuna {
 namespace {
 
-constexpr int kFrames = 40, kSeries = 3;
+constexpr int kMisfitFrames = 40, kSeries = 3;
 constexpr double kSigma = 1e-4;  // m
 
 // One recording of one marker, whose residual is `amount` of the nuisance and a wave.
@@ -29,11 +30,11 @@ FittedHypothesis MakeHypothesis(double amount) {
   misfit.usable = true;
   LinearisedMisfit::Part part;
   part.layout.series = kSeries;
-  part.layout.count.assign(kSeries * kFrames, 1);
-  for (int frame = 0; frame < kFrames; ++frame) part.layout.times.push_back(0.01 * frame);
+  part.layout.count.assign(kSeries * kMisfitFrames, 1);
+  for (int frame = 0; frame < kMisfitFrames; ++frame) part.layout.times.push_back(0.01 * frame);
   part.errors.noise = kSigma;
-  part.fitted.assign(kFrames, 1);
-  const Eigen::Index rows = kSeries * kFrames;
+  part.fitted.assign(kMisfitFrames, 1);
+  const Eigen::Index rows = kSeries * kMisfitFrames;
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(rows, 0, 1);
   misfit.jacobian.resize(rows, 2);
   misfit.jacobian.col(0) = 1e-3 * (2 * std::numbers::pi * t).array().cos();
@@ -110,8 +111,8 @@ EffectRefit MakeRefit(bool with, double amount, bool held_out_agrees, std::mt199
   LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::VectorXd column = misfit.jacobian.col(1);
   misfit.jacobian = column;
-  misfit.parts[0].fitted.assign(kFrames, 0);
-  std::fill_n(misfit.parts[0].fitted.begin(), kFrames / 2, 1);
+  misfit.parts[0].fitted.assign(kMisfitFrames, 0);
+  std::fill_n(misfit.parts[0].fitted.begin(), kMisfitFrames / 2, 1);
   const Eigen::Index half = column.size() / 2;
   misfit.residual = -amount * column;
   if (!held_out_agrees) misfit.residual.tail(half).setZero();
@@ -201,8 +202,7 @@ TEST(SpaceOfARefit, WeighsTheOtherEffectsBesideIt) {
   misfit.residual += 0.2 * there;
   const HypothesisSpace space = SpaceOf(hypothesis, ranking, {"refitted"}, kNoise);
   const ProjectedHypotheses projected(space);
-  const Eigen::VectorXd factors =
-      projected.LogBayesFactors(projected.Project(space.model.toward()));
+  const Eigen::VectorXd factors = projected.FactorsOfResidual();
   ASSERT_EQ(factors.size(), 3);
   const auto evidence = [&] {
     return LinearGaussianModel(
@@ -243,8 +243,8 @@ FittedHypothesis AtItsBest(FittedHypothesis hypothesis, const NoiseLevel& noise,
 TEST(RefitEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
   const NoiseLevel white{0, 1.3};
   FittedHypothesis with = MakeHypothesis(0.8), without;
-  std::fill(with.misfit.parts[0].fitted.begin() + kFrames / 2, with.misfit.parts[0].fitted.end(),
-            0);
+  std::fill(with.misfit.parts[0].fitted.begin() + kMisfitFrames / 2,
+            with.misfit.parts[0].fitted.end(), 0);
   with.misfit.jacobian = with.misfit.jacobian.col(1).eval();
   with.priors = {{0, 2, false}};
   without = with;
@@ -256,7 +256,7 @@ TEST(RefitEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
   const RefitEvidence of_a = EvidenceOf(a, white), of_b = EvidenceOf(b, white);
   const double held_out = of_a.held_out - of_b.held_out;
 
-  const Eigen::Index half = kSeries * kFrames / 2;
+  const Eigen::Index half = kSeries * kMisfitFrames / 2;
   const double variance = 1.3 * kSigma * kSigma;
   const Eigen::VectorXd by = with.misfit.jacobian.col(0), residual = with.misfit.residual;
   const double precision = by.head(half).squaredNorm() / variance + 0.25;
@@ -344,7 +344,7 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithoutTheEffect) {
   bed.score.size = Eigen::VectorXd::Constant(1, 3e6);  // Pa/m: the bar cannot move
   bed.expected_values = fit_.parameters;
   BaselineModel baseline{*problem_, fit_.parameters, misfit_, &progress_};
-  const EffectRefit refit = Refit(baseline, &bed, none_, false);
+  const EffectRefit refit = Refit({baseline, none_}, &bed);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   // A refit ends when a step gains less than one standard deviation.
   EXPECT_LE(refit.calibration.rms, 1.05 * fit_.rms);
@@ -355,7 +355,7 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithoutTheEffect) {
   // positive.
   baseline.model_error = 2;
   const ParameterEstimate size = refit.sizes.front();
-  const ParameterEstimate wider = Refit(baseline, &bed, none_, false).sizes.front();
+  const ParameterEstimate wider = Refit({baseline, none_}, &bed).sizes.front();
   const double factor = std::hypot(1, 2 / std::max(1.0, refit.calibration.rms));
   EXPECT_EQ(wider.value, size.value);
   EXPECT_NEAR(wider.high - wider.value, factor * (size.high - size.value), 1e-9 * wider.high);
@@ -366,12 +366,12 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithoutTheEffect) {
 TEST_F(EffectRefitOfACoarseBar, IsFittedAnewBesideOtherNuisances) {
   const ScoredEffect drag = Drag();
   const BaselineModel baseline{*problem_, fit_.parameters, misfit_, &progress_};
-  const EffectRefit refit = Refit(baseline, &drag, none_, false);
+  const EffectRefit refit = Refit({baseline, none_}, &drag);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   const NoiseLevel white{0, 1};
   const RefitEvidence before = EvidenceOf(refit, white);
   const auto beside = [&](const AdoptedNuisances& nuisances) {
-    return RefitFromValues(baseline, &drag, nuisances, refit.values_at_fit);
+    return RefitFromValues({baseline, nuisances}, &drag, refit.values_at_fit);
   };
 
   const RefitEvidence same = EvidenceOf(beside(none_), white);
@@ -391,7 +391,7 @@ TEST_F(EffectRefitOfACoarseBar, IsFittedAnewBesideOtherNuisances) {
   // Values beyond a bound start there.
   Eigen::VectorXd beyond = refit.values_at_fit;
   beyond[refit.model.size()] = -1;  // the coefficient, which must not be negative
-  EXPECT_TRUE(RefitFromValues(baseline, &drag, none_, beyond).message.empty());
+  EXPECT_TRUE(RefitFromValues({baseline, none_}, &drag, beyond).message.empty());
 }
 
 // The search is given up after its first steps, as one that another effect has beaten.
@@ -403,7 +403,7 @@ TEST_F(EffectRefitOfACoarseBar, SaysWhyItHasNotConverged) {
   far.head(2) = fit_.parameters.head(2);
   far[0] *= 30;
   const EffectRefit refit =
-      RefitFromValues(baseline, &drag, none_, far, -std::numeric_limits<double>::infinity());
+      RefitFromValues({baseline, none_}, &drag, far, -std::numeric_limits<double>::infinity());
   EXPECT_TRUE(refit.message.empty()) << refit.message;
   EXPECT_NE(refit.unconverged.find("would not come close enough"), std::string::npos)
       << refit.unconverged;

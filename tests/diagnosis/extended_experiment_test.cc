@@ -8,7 +8,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "diagnosis/candidates.h"
 #include "diagnosis/model_change.h"
+#include "diagnosis/rank_effects.h"
 #include "effects/catalogue.h"
 #include "prediction/prediction_study_reader.h"
 #include "support/held_bar.h"

@@ -17,6 +17,7 @@
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/rank_effects.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"

@@ -9,7 +9,7 @@
 
 #include "calibration/calibration_fits.h"
 #include "diagnosis/diagnosis.h"
-#include "diagnosis/effect_ranking.h"
+#include "diagnosis/rank_effects.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "effects/catalogue.h"
 #include "prediction/prediction_study_reader.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "diagnosis/candidates.h"
 #include "effects/catalogue.h"
 #include "support/held_bar.h"
 
@@ -52,6 +53,81 @@ TEST(WithEffect, LooksForAPlaceOnTheBody) {
   EXPECT_EQ(places, 3);
 }
 
+// Masses that are added to the body fall with its gravity, whichever of the two is added first, and
+// also while gravity is fitted.
+TEST(WithEffect, LetsAddedMassesFallWithTheGravityThatIsFitted) {
+  for (const bool gravity_first : {true, false}) {
+    PredictionStudy study = ElasticBar();
+    const CandidateEffect mass = CandidateFor(study, "attached_mass");
+    const CandidateEffect gravity = CandidateFor(study, "gravity");
+    for (const bool adds_gravity : {gravity_first, !gravity_first}) {
+      ScoredEffect scored;
+      scored.candidate = adds_gravity ? gravity : mass;
+      scored.score.size = adds_gravity ? Eigen::VectorXd(Eigen::Vector3d(1, 2, -9))
+                                       : Eigen::VectorXd(Eigen::VectorXd::Constant(1, 0.001));
+      study = WithEffect(study, scored);
+    }
+    ASSERT_EQ(study.effects.size(), 3u);
+    const Effect& added = *study.effects[gravity_first ? 2 : 1];
+    ASSERT_EQ(added.Card().type, "attached_mass");
+    EXPECT_EQ(added.Parameters().tail<3>(), Eigen::Vector3d(1, 2, -9)) << gravity_first;
+    Eigen::VectorXd values(static_cast<Eigen::Index>(study.fitted.size()));
+    for (size_t k = 0; k < study.fitted.size(); ++k)
+      values[static_cast<Eigen::Index>(k)] = study.fitted[k].prior.name == "gravity.acceleration_y"
+                                                 ? 0.5
+                                                 : study.fitted[k].prior.start;
+    const EffectList fitted = WithValues(study.effects, study.fitted, values);
+    for (const size_t effect : {1u, 2u})
+      if (fitted[effect]->Card().type == "attached_mass") {
+        EXPECT_EQ(fitted[effect]->Parameters().tail<3>(), Eigen::Vector3d(1, 0.5, -9))
+            << gravity_first;
+      }
+  }
+}
+
+// A mass whose weight is known while the model has no gravity, because the reference shape was
+// measured under it, does not fall with a gravity that a diagnosis adds.
+TEST(WithEffect, LeavesTheKnownWeightOfAMass) {
+  const auto with_gravity = [](double of_mass) {
+    PredictionStudy study = ElasticBar();
+    study.effects.push_back(MakeEffect("attached_mass", {{"mass", 0.002},
+                                                         {"centre_x", 0.08},
+                                                         {"centre_y", 0},
+                                                         {"centre_z", 0},
+                                                         {"gravity_x", 0},
+                                                         {"gravity_y", 0},
+                                                         {"gravity_z", of_mass}}));
+    ScoredEffect scored;
+    scored.candidate = CandidateFor(study, "gravity");
+    scored.score.size = Eigen::Vector3d(1, 2, -0.3);
+    return WithEffect(study, scored);
+  };
+  for (const double of_mass : {-9.81, 0.0}) {
+    const PredictionStudy with = with_gravity(of_mass);
+    ASSERT_EQ(with.effects.size(), 3u);
+    const Eigen::Vector3d own(0, 0, of_mass), added(1, 2, -0.3);
+    EXPECT_EQ(with.effects[1]->Parameters().tail<3>(), of_mass == 0 ? added : own);
+    EXPECT_EQ(with.fitted.size(), 3u);
+    for (const ModelParameter& parameter : with.fitted)
+      EXPECT_EQ(parameter.places.size(), of_mass == 0 ? 2u : 1u) << parameter.prior.name;
+  }
+}
+
+// The card of swelling has an open bound, at which the body vanishes. Far inside it, a bound of the
+// refit is an ordinary one, which the fit may reach.
+TEST(WithEffect, ClosesTheBoundsOfPlausibleValues) {
+  const PredictionStudy study = ElasticBar();
+  ScoredEffect scored;
+  scored.candidate = CandidateFor(study, "swelling");
+  ASSERT_NE(scored.candidate.effect, nullptr);
+  ASSERT_TRUE(scored.candidate.effect->Card().parameters[0].bounds.open_min);
+  scored.score.size = Eigen::VectorXd::Constant(1, 0.01);
+  const PredictionStudy with = WithEffect(study, scored);
+  ASSERT_EQ(with.fitted.size(), 1u);
+  EXPECT_GT(with.fitted[0].prior.min, -0.9);
+  EXPECT_FALSE(with.fitted[0].prior.open_min);
+}
+
 // The place of a support moves along its side; across it, the place is held.
 TEST(WithEffect, MovesASupportAlongItsSide) {
   const PredictionStudy study = ElasticBar();
@@ -71,6 +147,7 @@ TEST(WithEffect, MovesASupportAlongItsSide) {
   EXPECT_NEAR(along.start, 0.04, 1e-12);
   EXPECT_NEAR(along.max, 0.08, 1e-12);
   ASSERT_TRUE(radius.log_scale);
+  EXPECT_FALSE(radius.open_min) << "a range within the body";
   EXPECT_NEAR(radius.prior_mean, 0.08 / 6, 1e-12);
   EXPECT_NEAR(radius.max / radius.min, 16, 1e-9);
   // Of a uniform distribution of the logarithm.

@@ -18,7 +18,7 @@ using ::testing::AnyOf;
 using ::testing::Contains;
 
 // The truth has a finer mesh and shorter steps; the error of the model is about 1.5 to 2 σ.
-constexpr double kModelError = 2;  // σ
+constexpr double kDiscretisationError = 2;  // σ
 // The bar, 20 mm wide, is released at y > 0 and swings to y < 0, where it meets this plane.
 constexpr double kPlane = -0.0125;  // m
 
@@ -118,7 +118,7 @@ TEST(PilotHypotheses, AnElasticityLawTakesOverTheFittedModuli) {
 
 TEST(Diagnosis, PrefersAPlaneThatTheBarMeets) {
   const Diagnosis diagnosis = DiagnoseBar(BesideAPlane(), {});
-  EXPECT_GT(diagnosis.errors.rms_over_sigma, kModelError);
+  EXPECT_GT(diagnosis.errors.rms_over_sigma, kDiscretisationError);
   const RankedEffect* contact = Find(diagnosis, "plane_contact");
   ASSERT_NE(contact, nullptr);
   ASSERT_TRUE(contact->refitted);

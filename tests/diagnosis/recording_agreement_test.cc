@@ -23,7 +23,7 @@
 namespace lacuna {
 namespace {
 
-constexpr double kNoise = 5e-5, kPlaceDeviation = 2e-4;  // m
+constexpr double kMarkerNoise = 5e-5, kPlaceDeviation = 2e-4;  // m
 constexpr int kPairs = 60;
 
 // The fit of two recordings without noise, linearised. Noise is added to the residual: it enters
@@ -84,7 +84,7 @@ struct TwoRecordings {
       for (size_t at = 0; at < part.layout.deformation.size(); ++at) {
         auto row = drawn.residual.segment<3>(part.first_row + 3 * static_cast<Eigen::Index>(at));
         row -= part.layout.deformation[at] * places.col(static_cast<Eigen::Index>(at % kMarkers));
-        for (double& coordinate : row) coordinate -= kNoise * normal(*random);
+        for (double& coordinate : row) coordinate -= kMarkerNoise * normal(*random);
       }
     return Compare(drawn);
   }

@@ -1,4 +1,5 @@
 // What becomes of the refits of a diagnosis once there is another fit of the same effect.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,8 +9,12 @@
 #include <vector>
 
 #include "calibration/calibration_fits.h"
+#include "diagnosis/effect_refit.h"
+#include "diagnosis/nuisance_refits.h"
 #include "diagnosis/pair_refit.h"
+#include "diagnosis/refit_comparison.h"
 #include "diagnosis/refits.h"
+#include "diagnosis/refitted_ranking.h"
 #include "effects/catalogue.h"
 #include "support/held_bar.h"
 #include "support/silent_progress.h"
@@ -55,7 +60,7 @@ class RefitsOfABar : public ::testing::Test {
   // The model without an effect, and effects that have not been refitted.
   RefittedRanking RankedWith(const BaselineModel& model, const std::vector<ScoredEffect>& effects) {
     RefittedRanking ranked;
-    ranked.baseline = Refit(model, nullptr, ranking_.adopted, false);
+    ranked.baseline = Refit({model, ranking_.adopted}, nullptr);
     EXPECT_TRUE(ranked.baseline.message.empty()) << ranked.baseline.message;
     for (const ScoredEffect& effect : effects) ranked.effects.emplace_back().scored = effect;
     ranked.refits.resize(effects.size());
@@ -64,7 +69,7 @@ class RefitsOfABar : public ::testing::Test {
 
   EffectRefit RefitDrag(const BaselineModel& model) {
     const ScoredEffect drag = Drag("");
-    EffectRefit refit = Refit(model, &drag, ranking_.adopted, false);
+    EffectRefit refit = Refit({model, ranking_.adopted}, &drag);
     EXPECT_TRUE(refit.message.empty()) << refit.message;
     return refit;
   }
@@ -150,6 +155,8 @@ TEST_F(RefitsOfABar, PayForTheVariantsThatTheyCannotReach) {
   ranked.Take(1, {of_seven, refit});
   WeighRefits({model, ranking_}, &ranked);
   EXPECT_NEAR(ranked.effects[0].evidence - ranked.effects[1].evidence, std::log(7), 1e-9);
+  // They pay for the choice among both effects, too.
+  EXPECT_EQ(ranked.effects[0].penalty_of_effects, SelectionPenalty(2));
 }
 
 // What the best refit was before has been found beside other columns.
@@ -159,47 +166,80 @@ TEST_F(RefitsOfABar, AreComparedWithTheBestOneBesideTheSameColumns) {
   ranked.baseline.errors.has_held_out = false;  // nothing is refuted
   ranked.Take(0, {Drag(""), RefitDrag(model)});
   ranked.baseline_evidence = EvidenceOf(ranked.refits[0], kWhite).all - 1000;
-  ranked.best = 0;
-  ranked.best_evidence = ranked.underrated = 1e6;
+  ranked.best = {.effect = 0, .evidence = 1e6, .underrated = 1e6};
   EffectRanking along;
   along.adopted = ranking_.adopted;
   along.noise = kWhite;
   LookAlong({model, ranking_}, "drag", along, &ranked);
   ASSERT_TRUE(ranked.best.has_value());
-  EXPECT_EQ(ranked.best_evidence,
+  EXPECT_EQ(ranked.best->evidence,
             EvidenceOf(ranked.refits[0], kWhite).all - ranked.baseline_evidence);
-  EXPECT_LT(ranked.best_evidence, 1e5);
-  EXPECT_EQ(ranked.underrated, ranked.best_evidence);  // first order gives no evidence
+  EXPECT_LT(ranked.best->evidence, 1e5);
+  EXPECT_EQ(ranked.best->underrated, ranked.best->evidence);  // first order gives no evidence
 }
 
-// A refit that seems to be far behind, here a support with three times the stiffness, is settled
-// beside the new columns, and fitted again if that brings it near.
+// A refit that is far behind, and that no change of its parameters brings near, is not predicted.
+TEST_F(RefitsOfABar, StayWhereTheyAreIfTheyAreFarBehind) {
+  const BaselineModel model = Model();
+  RefittedRanking ranked = RankedWith(model, {Drag(""), Support("")});
+  ranked.baseline.errors.has_held_out = false;
+  ranked.Take(0, {Drag(""), RefitDrag(model)});
+  const ScoredEffect support = Support("");
+  EffectRefit behind = Refit({model, ranking_.adopted}, &support);
+  ASSERT_TRUE(behind.message.empty()) << behind.message;
+  behind.at_fit.misfit.residual *= 10;
+  behind.at_fit.misfit.jacobian.setZero();
+  behind.hypothesis = behind.at_fit;
+  behind.unconverged.clear();
+  ranked.Take(1, {support, behind});
+  ranked.baseline_evidence = EvidenceOf(ranked.refits[0], kWhite).all - 1000;
+  ranked.best = {.effect = 0, .evidence = 1000};
+  EffectRanking along;
+  along.adopted = {1e-6 * ranking_.misfit.jacobian.col(0), {{0, 1, false}}, 1};
+  along.noise = kWhite;
+  LookAlong({model, ranking_}, "drag", along, &ranked);
+  const EffectRefit& stays = ranked.refits[1];
+  EXPECT_THAT(stays.unconverged, testing::HasSubstr("too far behind"));
+  EXPECT_EQ(stays.values_at_fit, behind.values_at_fit);
+  EXPECT_EQ(stays.hypothesis.misfit.residual, behind.at_fit.misfit.residual);
+  EXPECT_EQ(stays.at_fit.misfit.jacobian.cols(), stays.at_fit.parameters + 1);
+}
+
+// A refit that seems to be far behind, here a support with another stiffness, is fitted again if
+// first order promises to bring it near.
 TEST_F(RefitsOfABar, AreFittedAgainWhereTheyOnlySeemedFarBehind) {
   const BaselineModel model = Model();
   RefittedRanking ranked = RankedWith(model, {Drag(""), Support("")});
   ranked.baseline.errors.has_held_out = false;
   ranked.Take(0, {Drag(""), RefitDrag(model)});
   const ScoredEffect support = Support("");
-  EffectRefit behind = Refit(model, &support, ranking_.adopted, false);
+  EffectRefit behind = Refit({model, ranking_.adopted}, &support);
   ASSERT_TRUE(behind.message.empty()) << behind.message;
-  behind.values_at_fit[0] *= 3;
-  behind.hypothesis.misfit.residual *= 10;
+  // As a column of its Jacobian says, a change of the last parameter by so much.
+  const Eigen::Index last = behind.at_fit.parameters - 1;
+  const auto push = [&](FittedHypothesis* hypothesis) {
+    const Eigen::VectorXd column = hypothesis->misfit.jacobian.col(last);
+    const double rms = RmsOverSigma(column, hypothesis->misfit);
+    hypothesis->misfit.residual += 100 / rms * column;
+  };
+  push(&behind.at_fit);
+  push(&behind.hypothesis);
   behind.unconverged.clear();
   ranked.Take(1, {support, behind});
   ranked.baseline_evidence = EvidenceOf(ranked.refits[0], kWhite).all - 1000;
-  ranked.best = 0;
-  ranked.best_evidence = 1000;
+  ranked.best = {.effect = 0, .evidence = 1000};
   EffectRanking along;
   along.adopted = {1e-6 * ranking_.misfit.jacobian.col(0), {{0, 1, false}}, 1};
   along.noise = kWhite;
+  along.noise.variance = 1e6;  // another noise than that in which refits are compared
   LookAlong({model, ranking_}, "drag", along, &ranked);
   const EffectRefit& again = ranked.refits[1];
   ASSERT_TRUE(ranked.IsUsable(1)) << ranked.effects[1].refit_message;
   EXPECT_EQ(again.unconverged, "");
-  EXPECT_NE(again.calibration.parameters, behind.calibration.parameters);
   EXPECT_EQ(again.hypothesis.misfit.jacobian.cols(), again.hypothesis.parameters + 1);
   EXPECT_EQ(again.at_fit.misfit.jacobian.cols(), again.at_fit.parameters + 1);
-  EXPECT_EQ(ranked.best, 1u);  // the support explains more than drag
+  ASSERT_TRUE(ranked.best.has_value());
+  EXPECT_EQ(ranked.best->effect, 1u);  // the support explains more than drag
 }
 
 // Each of the three comparisons of a pair allows for a third of one false refutation in 100:

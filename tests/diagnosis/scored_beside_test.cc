@@ -23,7 +23,7 @@ TEST(ScoredBeside, ChangesNothingWhereTheBaseIsTheSame) {
   const SyntheticSpace columns;
   const HypothesisSpace space = columns.With(SyntheticSpace::Noise(1) + 12 * columns.Of("drag"));
   const ProjectedHypotheses beside(space);
-  const Eigen::VectorXd factors = beside.LogBayesFactors(beside.Project(space.model.toward()));
+  const Eigen::VectorXd factors = beside.FactorsOfResidual();
   std::vector<ScoredEffect> effects;
   for (size_t h = 0; h < space.hypotheses.size(); ++h) {
     if (space.hypotheses[h].kind != HypothesisKind::kEffect) continue;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/decision_input.h"
 #include "diagnosis/hypothesis_space.h"
 #include "scan/random_bits.h"
 
@@ -79,6 +80,18 @@ struct SyntheticSpace {
   std::vector<LinearPrior> priors;
   std::vector<WeighedHypothesis> hypotheses;
 };
+
+// The input of a decision upon this residual, without refits. The noise is known.
+inline DecisionInput InputOf(const SyntheticSpace& synthetic, const Eigen::VectorXd& residual) {
+  DecisionInput input;
+  input.baseline = synthetic.With(residual);
+  input.families = {{"drag", EffectFamily::kLossOutside},
+                    {"mass_damping", EffectFamily::kLossOutside},
+                    {"gravity", EffectFamily::kSteadyForce},
+                    {"fibres", EffectFamily::kStiffnessDistribution}};
+  input.noise_is_known = true;
+  return input;
+}
 
 }  // namespace lacuna
 

@@ -1,4 +1,4 @@
-#include "diagnosis/open_decision.h"
+#include "diagnosis/rival_pairs.h"
 
 #include <gtest/gtest.h>
 
@@ -44,11 +44,11 @@ class Rivals : public testing::Test {
                  {"gravity", EffectFamily::kSteadyForce},
                  {"contact", EffectFamily::kOther},
                  {"law", EffectFamily::kOther}};
-    ranked_.along_type = "drag";
     EffectRanking along;
     along.effects = {Scored("branch", 40), Scored("plastic", 25), Scored("gravity", 20),
                      Scored("damping", 1)};
-    ranked_.along = std::make_shared<const EffectRanking>(along);
+    const auto ranking = std::make_shared<const EffectRanking>(along);
+    ranked_.along = AlongRefit{"drag", ranking, ranking};
     ranked_.effects = {Refitted("drag", 100),   Refitted("mass_damping", 95),
                        NotRefitted("slip"),     NotRefitted("branch"),
                        NotRefitted("plastic"),  NotRefitted("damping"),

@@ -1,4 +1,4 @@
-#include "diagnosis/effect_ranking.h"
+#include "diagnosis/rank_effects.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace lacuna {
 namespace {
 
 // Softer across is, to first order, much like stiffer along; a refit tries both.
-TEST(EffectRanking, TellsOfOtherDirectionsThatAreAsGood) {
+TEST(RankEffects, TellsOfOtherDirectionsThatAreAsGood) {
   const TemporaryFolder folder;
   HeldBarTruth truth;
   truth.hidden = {
@@ -42,7 +42,7 @@ TEST(EffectRanking, TellsOfOtherDirectionsThatAreAsGood) {
   EXPECT_LT(fibres->elsewhere.front().score.size[0] * fibres->score.size[0], 0);
 }
 
-TEST(EffectRanking, TakesOverTheColumnsOfItsScene) {
+TEST(RankEffects, TakesOverTheColumnsOfItsScene) {
   const TemporaryFolder folder;
   WriteBarRecording(folder.Path(), FilmHeldBar({}));
   const PredictionStudy study = ReadBarStudy(folder.Path());
@@ -69,7 +69,7 @@ TEST(EffectRanking, TakesOverTheColumnsOfItsScene) {
 
 // The bar stands still after its film, so that the recording becomes too long for a nuisance that
 // needs a column for each frame.
-TEST(EffectRanking, NamesTheRecordingsWithTooManyFramesForANuisance) {
+TEST(RankEffects, NamesTheRecordingsWithTooManyFramesForANuisance) {
   const TemporaryFolder folder;
   std::vector<Eigen::Matrix3Xd> markers = FilmHeldBar({});
   markers.resize(kThresholds.nuisances.most_single_frames + 1, markers.back());
@@ -90,7 +90,7 @@ TEST(EffectRanking, NamesTheRecordingsWithTooManyFramesForANuisance) {
 }
 
 // What an added effect has explained tells how large the error of its own model may be.
-TEST(EffectRanking, CountsTheErrorOfEffectsThatWereAddedBefore) {
+TEST(RankEffects, CountsTheErrorOfEffectsThatWereAddedBefore) {
   const TemporaryFolder folder;
   WriteBarRecording(folder.Path(), FilmHeldBar({}));
   PredictionStudy study = ReadBarStudy(folder.Path());
@@ -107,7 +107,7 @@ TEST(EffectRanking, CountsTheErrorOfEffectsThatWereAddedBefore) {
 
 // A nuisance that an earlier ranking has adopted along another motion, and one that cannot be made
 // along this one.
-TEST(EffectRanking, TakesTheColumnsOfAdoptedNuisancesAlongItsOwnMotion) {
+TEST(RankEffects, TakesTheColumnsOfAdoptedNuisancesAlongItsOwnMotion) {
   const TemporaryFolder folder;
   WriteBarRecording(folder.Path(), FilmHeldBar({}));
   const PredictionStudy study = ReadBarStudy(folder.Path());
