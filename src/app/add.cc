@@ -12,6 +12,7 @@
 #include "core/suggestion.h"
 #include "diagnosis/diagnosis_run.h"
 #include "diagnosis/extended_experiment.h"
+#include "diagnosis/rank_effects.h"
 #include "effects/catalogue.h"
 #include "prediction/prediction_study_reader.h"
 #include "report/calibration_report.h"
@@ -40,6 +41,10 @@ void RequireAddable(const std::string& type, const PredictionStudy& study) {
                   [&](const auto& effect) { return effect->Card().type == type; });
   if (is_there && !entry->card->repeatable)
     throw InputError(fmt::format("{}: the model already has this effect", type));
+  for (const auto& effect : study.effects)
+    if (effect->Card().type != type && !MayStandBeside(effect->Card(), *entry->card))
+      throw InputError(fmt::format("{}: cannot be combined with {}, which the model has", type,
+                                   effect->Card().type));
   if (entry->is_own_law)
     throw InputError(fmt::format(
         "{} stands for any user-defined law: write the law into the experiment's `candidates`, and "

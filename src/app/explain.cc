@@ -18,6 +18,7 @@
 #include "diagnosis/nuisance_catalogue.h"
 #include "effects/catalogue.h"
 #include "effects/effect_text.h"
+#include "effects/gravity.h"
 #include "effects/vector_parameters.h"
 
 namespace lacuna {
@@ -64,6 +65,7 @@ bool IsDirection(const ParameterCard& parameter, size_t count) {
 // The default of parameter `k` of the card or, where `count` is 3, of the vector that starts there.
 std::string DefaultText(const CatalogueEntry& entry, size_t k, size_t count) {
   const ParameterCard& first = entry.card->parameters[k];
+  if (static_cast<int>(k) == GravitySettingOn(*entry.card)) return "default: the model's";
   if (std::isnan(first.default_value)) {
     const bool from_material =
         entry.kind == CatalogueEntry::Kind::kEffect && IsOfMaterials(first.name);

@@ -10,6 +10,7 @@
 #include "core/blas_kernels.h"
 #include "core/interrupt.h"
 #include "core/logging.h"
+#include "trials/case_files.h"
 #include "trials/follow_up.h"
 #include "trials/interval_trials.h"
 #include "trials/trial_report.h"
@@ -28,7 +29,7 @@ void Report(const std::filesystem::path& folder) {
 void Redecide(const std::filesystem::path& folder) {
   int decided = 0;
   for (const std::filesystem::path& own : CasesIn(folder)) {
-    const TrialCase trial = LoadCase(own / "truth.json");
+    const TrialCase trial = LoadCase(own);
     decided += RedecideOutcome(trial, own);
     for (const std::filesystem::path& follow_up : FollowUpFolders(own))
       RedecideOutcome(trial, follow_up);
@@ -60,17 +61,11 @@ int Main(int argc, char** argv) {
   CLI::App* make = app.add_subcommand("make", "Make the cases of a suite");
   make->add_option("suite", suite, "The suite's YAML file, experiments/trials/*.yaml")->required();
   make->add_option("folder", folder, "Folder for the cases")->required();
-  make->add_option("--workers", workers, "Number of processes that run at the same time")
-      ->check(CLI::Range(1, 64));
   CLI::App* run = app.add_subcommand("run", "Diagnose the cases that have no outcome yet");
   run->add_option("folder", folder, "Folder of the cases")->required();
-  run->add_option("--workers", workers, "Number of processes that run at the same time")
-      ->check(CLI::Range(1, 64));
   CLI::App* follow = app.add_subcommand(
       "follow", "Make the next recording that a plan proposes for each case left open");
   follow->add_option("folder", folder, "Folder of the cases")->required();
-  follow->add_option("--workers", workers, "Number of processes that run at the same time")
-      ->check(CLI::Range(1, 64));
   CLI::App* redecide = app.add_subcommand(
       "redecide", "Decide again with the rules as they are now, from the stored evidence");
   redecide->add_option("folder", folder, "Folder of the cases")->required();
@@ -81,8 +76,9 @@ int Main(int argc, char** argv) {
   intervals->add_option("suite", suite, "The suite's YAML file, experiments/trials/intervals*.yaml")
       ->required();
   intervals->add_option("folder", folder, "Folder for the draws")->required();
-  intervals->add_option("--workers", workers, "Number of processes that run at the same time")
-      ->check(CLI::Range(1, 64));
+  for (CLI::App* command : {make, run, follow, intervals})
+    command->add_option("--workers", workers, "Number of processes that run at the same time")
+        ->check(CLI::Range(1, 64));
   AddDocumentOption(&app);
   if (const std::optional<int> ended = ParseCommandLine(&app, argc, argv)) return *ended;
   return ExitStatusOf("lacuna-trials", [&] {

@@ -9,9 +9,7 @@
 
 #include "calibration/calibration_run.h"
 #include "core/atomic_file.h"
-#include "core/claim.h"
 #include "core/error.h"
-#include "core/workers.h"
 #include "diagnosis/decision.h"
 #include "diagnosis/decision_store.h"
 #include "plan/planned_experiment.h"
@@ -20,6 +18,7 @@
 #include "scan/marker_frames.h"
 #include "scan/random_bits.h"
 #include "scan/recorded_grip.h"
+#include "trials/case_files.h"
 #include "trials/trial_load_cell.h"
 #include "trials/trial_recording.h"
 #include "trials/trial_simulation.h"
@@ -33,8 +32,7 @@ constexpr uint64_t kRandomProtocol = 80;  // stream of draws
 // Numbers of the recordings, which draw their noise: a case has up to two of its own.
 constexpr int kBestNumber = 2, kRandomNumber = 3;
 
-fs::path FolderOf(const fs::path& own) { return own / "follow_up"; }
-fs::path FileOf(const fs::path& own) { return FolderOf(own) / "follow_up.json"; }
+constexpr char kFollowUpFolder[] = "follow_up", kFollowUpFile[] = "follow_up/follow_up.json";
 
 // A case whose model was fitted, with its plan.
 struct PlannedCase {
@@ -49,13 +47,13 @@ struct PlannedCase {
 PlannedCase Plan(const fs::path& own) {
   Progress progress({.style = ProgressStyle::kSilent});
   PlannedCase planned;
-  planned.trial = LoadCase(own / "truth.json");
-  PredictionStudy study = ReadPredictionStudy(Config::Load(own / "experiment.yaml"));
-  study.output = FolderOf(own) / "fit";
+  planned.trial = LoadCase(own);
+  PredictionStudy study = ReadPredictionStudy(Config::Load(own / kExperimentFile));
+  study.output = own / kFollowUpFolder / "fit";
   RunCalibration(study, &progress);
   planned.fitted = OpenRun(study.output);
-  const DecisionInput decision = LoadDecisionInput(DecisionOf(own));
-  DiagnosisRecord diagnosis = ReadDiagnosisFile(own / "diagnosis.json");
+  const DecisionInput decision = LoadDecisionInput(own / kDecisionFolder);
+  DiagnosisRecord diagnosis = ReadDiagnosisFile(own / kDiagnosisFile);
   diagnosis.decision = Decide(decision).record;
   planned.time_step = diagnosis.time_step;
   planned.protocols = StockProtocols(planned.fitted.study, planned.fitted.mesh);
@@ -95,8 +93,8 @@ FollowUp Follow(const PlannedCase& planned, const PlannedOutcome& outcome, int n
   made.protocol = outcome.name;
   for (size_t k = 0; k < planned.plan.rivals.size(); ++k)
     if (planned.trial.Hides(planned.plan.rivals[k].effect)) made.predicted = outcome.named[k];
-  if (fs::exists(folder / "outcome.json")) {
-    made.outcome = LoadOutcome(folder / "outcome.json");
+  if (fs::exists(folder / kOutcomeFile)) {
+    made.outcome = LoadTrialOutcome(folder);
     return made;
   }
   const Protocol& protocol =
@@ -115,8 +113,8 @@ FollowUp Follow(const PlannedCase& planned, const PlannedOutcome& outcome, int n
   WriteMarkerFrames(folder / "measured", recording.item.recording.times, seen.markers);
   // Its only reading, which recording.yaml describes already.
   if (seen.reading) WriteReaction(folder / "measured", *seen.reading, 1);
-  made.outcome = RunCase(own, folder / "experiment.yaml", folder);
-  SaveOutcome(made.outcome, folder / "outcome.json");
+  made.outcome = RunCase(own, folder);
+  SaveTrialOutcome(made.outcome, folder);
   return made;
 }
 
@@ -131,7 +129,7 @@ std::optional<FollowUp> FromJson(const nlohmann::json& json, const fs::path& fol
   FollowUp made;
   made.protocol = json.at("protocol");
   if (!json.at("predicted").is_null()) made.predicted = json.at("predicted");
-  made.outcome = LoadOutcome(folder / "outcome.json");
+  made.outcome = LoadTrialOutcome(folder);
   return made;
 }
 
@@ -148,6 +146,14 @@ CaseFollowUps MakeFollowUps(const fs::path& own) {
     made.message = problem.what();
   }
   return made;
+}
+
+std::vector<fs::path> OpenCasesIn(const fs::path& folder) {
+  std::vector<fs::path> open;
+  for (const fs::path& own : CasesIn(folder))
+    if (fs::exists(own / kOutcomeFile) && IsOpen(LoadCase(own), LoadTrialOutcome(own)))
+      open.push_back(own);
+  return open;
 }
 
 void Count(const TrialCase& trial, const FollowUp& made, FollowUpTally* tally) {
@@ -182,30 +188,18 @@ TrueRecording RecordTruth(const TrialCase& trial, const Protocol& protocol,
 
 bool IsOpen(const TrialCase& trial, const TrialOutcome& outcome) {
   const std::vector<Verdict> open = {Verdict::kAmbiguous, Verdict::kNoPower, Verdict::kAdequate};
-  return trial.group == "one_effect" && !trial.is_scanned &&
+  return trial.group == TrialGroup::kOneEffect && !trial.is_scanned &&
          std::find(open.begin(), open.end(), outcome.verdict) != open.end();
 }
 
 std::vector<fs::path> FollowUpFolders(const fs::path& own) {
-  return {FolderOf(own) / "best", FolderOf(own) / "random"};
+  return {own / kFollowUpFolder / "best", own / kFollowUpFolder / "random"};
 }
 
 int RunFollowUps(const fs::path& folder, int workers) {
-  std::vector<fs::path> open;
-  for (const fs::path& own : CasesIn(folder))
-    if (fs::exists(own / "outcome.json") &&
-        IsOpen(LoadCase(own / "truth.json"), LoadOutcome(own / "outcome.json")))
-      open.push_back(own);
-  const auto keep_failure = [&](size_t k, const std::string& reason) {
-    WriteFileAtomically(FolderOf(open[k]) / "failed.txt", reason + "\n");
-  };
-  return ShareOut(open.size(), {.workers = workers, .crashed = keep_failure}, [&](size_t k) {
-    MakeFolder(FolderOf(open[k]));
-    const Claim claim(FolderOf(open[k]) / "claimed");
-    if (!claim.holds() || fs::exists(FileOf(open[k]))) return;
-    SaveFollowUps(MakeFollowUps(open[k]), open[k]);
-    fs::remove(FolderOf(open[k]) / "failed.txt");
-  });
+  const std::vector<fs::path> open = OpenCasesIn(folder);
+  return WorkOn(open, kFollowUpFile, workers,
+                [&](size_t k) { SaveFollowUps(MakeFollowUps(open[k]), open[k]); });
 }
 
 void SaveFollowUps(const CaseFollowUps& made, const fs::path& own) {
@@ -213,28 +207,25 @@ void SaveFollowUps(const CaseFollowUps& made, const fs::path& own) {
                               {"message", made.message},
                               {"best", ToJson(made.best)},
                               {"random", ToJson(made.random)}};
-  WriteFileAtomically(FileOf(own), all.dump(2) + "\n");
+  WriteFileAtomically(own / kFollowUpFile, all.dump(2) + "\n");
 }
 
 std::optional<CaseFollowUps> LoadFollowUps(const fs::path& own) {
-  std::ifstream stream(FileOf(own));
+  std::ifstream stream(own / kFollowUpFile);
   if (!stream) return std::nullopt;
   try {
     const auto json = nlohmann::json::parse(stream);
     return CaseFollowUps{json.at("message"), FromJson(json.at("best"), FollowUpFolders(own)[0]),
                          FromJson(json.at("random"), FollowUpFolders(own)[1])};
   } catch (const nlohmann::json::exception& problem) {
-    throw InputError(fmt::format("{}: {}", FileOf(own).string(), problem.what()));
+    throw InputError(fmt::format("{}: {}", (own / kFollowUpFile).string(), problem.what()));
   }
 }
 
 FollowUpReport ReportFollowUps(const fs::path& folder) {
   FollowUpReport report;
   FollowUpTally best{.choice = "best of the plan"}, random{.choice = "another one at random"};
-  for (const fs::path& own : CasesIn(folder)) {
-    if (!fs::exists(own / "outcome.json")) continue;
-    const TrialCase trial = LoadCase(own / "truth.json");
-    if (!IsOpen(trial, LoadOutcome(own / "outcome.json"))) continue;
+  for (const fs::path& own : OpenCasesIn(folder)) {
     ++report.open;
     const std::optional<CaseFollowUps> made = LoadFollowUps(own);
     report.waiting += !made;
@@ -243,6 +234,7 @@ FollowUpReport ReportFollowUps(const fs::path& folder) {
       ++report.unpaired;
       continue;
     }
+    const TrialCase trial = LoadCase(own);
     Count(trial, *made->best, &best);
     Count(trial, *made->random, &random);
   }

@@ -54,10 +54,8 @@ TrueRecording RecordTruth(const TrialCase& trial, const Protocol& protocol,
 // "ambiguous", "no power" or "adequate".
 bool IsOpen(const TrialCase& trial, const TrialOutcome& outcome);
 
-// Makes the follow-ups of all open cases of a folder that have none yet, each in a process of its
-// own, `workers` at a time, in <case>/follow_up. What fails for another reason than those of
-// CaseFollowUps, such as a full disk, is written to failed.txt there and tried again by the next
-// call. Returns the result of ShareOut (core/workers.h).
+// Makes the follow-ups of all open cases of a folder that have none yet, in <case>/follow_up: see
+// WorkOn (trials/case_files.h), which keeps other failures than those of CaseFollowUps.
 int RunFollowUps(const std::filesystem::path& folder, int workers);
 
 // Writes and reads what a case's folder keeps; the outcomes of its follow-ups stand in folders of

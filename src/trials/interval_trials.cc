@@ -14,11 +14,9 @@
 #include "analysis/whiteness.h"
 #include "calibration/calibration_run.h"
 #include "core/atomic_file.h"
-#include "core/claim.h"
 #include "core/error.h"
 #include "core/progress.h"
 #include "core/text_file.h"
-#include "core/workers.h"
 #include "effects/catalogue.h"
 #include "effects/neo_hookean.h"
 #include "effects/stiffness_damping.h"
@@ -26,13 +24,15 @@
 #include "prediction/prediction_study_reader.h"
 #include "report/line_chart.h"
 #include "scan/random_bits.h"
+#include "trials/case_files.h"
 #include "trials/trial_simulation.h"
 #include "trials/trial_suite.h"
 
 namespace lacuna {
 namespace {
 
-constexpr int kIntervalsVersion = 1;  // of intervals.json
+constexpr char kIntervalsFile[] = "intervals.json";  // of a draw, and of all
+constexpr int kIntervalsVersion = 1;
 constexpr int kBins = 10;
 constexpr uint64_t kShapeStream = 70, kEffectStream = 71, kPriorStream = 72;
 
@@ -105,10 +105,8 @@ nlohmann::json ToJson(const std::vector<JudgedParameter>& parameters) {
 }
 
 std::vector<JudgedParameter> LoadJudged(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError(file.string() + ": cannot be opened");
   try {
-    const auto json = nlohmann::json::parse(stream);
+    const auto json = nlohmann::json::parse(ReadWholeFile(file));
     if (json.at("schema_version") != kIntervalsVersion)
       throw InputError(file.string() + ": is of another version of the program; make it again");
     std::vector<JudgedParameter> parameters;
@@ -151,13 +149,13 @@ IntervalTally TallyOf(const std::string& name, const std::vector<double>& deviat
 
 // Fits the draw in `folder`, and compares it with its truth.
 void FitDraw(const std::filesystem::path& folder) {
-  PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
+  PredictionStudy study = ReadPredictionStudy(Config::Load(folder / kExperimentFile));
   study.output = folder / "fit";
   Progress progress({.style = ProgressStyle::kSilent});
   const CalibrationRecord record = RunCalibration(study, &progress);
   if (!record.usable) throw InputError(folder.string() + ": " + record.message);
-  const TrialCase truth = LoadCase(folder / "truth.json");
-  WriteFileAtomically(folder / "intervals.json", ToJson(Judge(record, truth)).dump(2) + "\n");
+  const std::vector<JudgedParameter> judged = Judge(record, LoadCase(folder));
+  WriteFileAtomically(folder / kIntervalsFile, ToJson(judged).dump(2) + "\n");
 }
 
 }  // namespace
@@ -166,7 +164,7 @@ IntervalSuite ReadIntervalSuite(const Config& config) {
   constexpr int kMost = 1'000'000;
   IntervalSuite suite;
   config.Integer("schema_version", 1, 1);
-  suite.name = config.Text("name");
+  config.Text("name");
   suite.seed = static_cast<uint64_t>(config.Integer("seed", 0, kMost));
   suite.draws = config.Integer("draws", 1, kMost);
   suite.recordings = config.Integer("recordings", 1, 2, suite.recordings);
@@ -193,7 +191,7 @@ IntervalSuite ReadIntervalSuite(const Config& config) {
 }
 
 TrialCase DrawIntervalCase(const IntervalSuite& suite, int number) {
-  TrialCase trial = DrawCase(fmt::format("{:04}", number), "intervals",
+  TrialCase trial = DrawCase(fmt::format("{:04}", number), TrialGroup::kIntervals,
                              RandomBits({suite.seed, static_cast<uint64_t>(number)}),
                              suite.recordings, false, "");
   for (int axis = 0; axis < 3; ++axis)
@@ -255,35 +253,24 @@ std::vector<JudgedParameter> Judge(const CalibrationRecord& record, const TrialC
 }
 
 int RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& folder, int workers) {
-  MakeFolder(folder);
   std::vector<std::filesystem::path> draws;
   for (int k = 0; k < suite.draws; ++k) {
     const TrialCase drawn = DrawIntervalCase(suite, k);
     draws.push_back(folder / drawn.name);
-    MakeFolder(draws.back());
-    const std::filesystem::path truth = draws.back() / "truth.json";
+    const std::filesystem::path truth = draws.back() / kTruthFile;
     if (std::filesystem::exists(truth) && ReadTextFile(truth) != TextOfCase(drawn))
       throw InputError(
           {truth.string()},
           "belongs to a draw of another suite or of another version of the program; choose another "
           "folder");
   }
-  const auto keep_failure = [&](size_t k, const std::string& reason) {
-    WriteFileAtomically(draws[k] / "failed.txt", reason + "\n");
-  };
-  return ShareOut(draws.size(), {.workers = workers, .crashed = keep_failure}, [&](size_t k) {
-    const Claim claim(draws[k] / "claimed");
-    if (!claim.holds() || std::filesystem::exists(draws[k] / "intervals.json")) return;
-    try {
-      if (!std::filesystem::exists(draws[k] / "truth.json")) {
-        const TrialCase trial = DrawIntervalCase(suite, static_cast<int>(k));
-        SimulateCase(trial, draws[k]);
-        SaveCase(trial, draws[k] / "truth.json");
-      }
-      FitDraw(draws[k]);
-    } catch (const InputError& problem) {
-      keep_failure(k, problem.what());
+  return WorkOn(draws, kIntervalsFile, workers, [&](size_t k) {
+    if (!std::filesystem::exists(draws[k] / kTruthFile)) {
+      const TrialCase trial = DrawIntervalCase(suite, static_cast<int>(k));
+      SimulateCase(trial, draws[k]);
+      SaveCase(trial, draws[k]);
     }
+    FitDraw(draws[k]);
   });
 }
 
@@ -293,16 +280,16 @@ IntervalReport ReportIntervals(const std::filesystem::path& folder) {
   std::map<std::string, std::vector<double>> deviations;
   const std::vector<std::filesystem::path> draws = CasesIn(folder);
   if (!draws.empty())  // all draws of a suite lack the same
-    for (const HiddenEffect& hidden : LoadCase(draws.front() / "truth.json").hidden)
+    for (const HiddenEffect& hidden : LoadCase(draws.front()).hidden)
       report.missing.push_back(hidden.type);
   for (const std::filesystem::path& draw : draws) {
-    if (!std::filesystem::exists(draw / "intervals.json")) {
+    if (!std::filesystem::exists(draw / kIntervalsFile)) {
       std::string reason = "not fitted yet";
-      if (std::ifstream stream(draw / "failed.txt"); stream) std::getline(stream, reason);
+      if (std::ifstream stream(draw / kFailureFile); stream) std::getline(stream, reason);
       report.failed.push_back(draw.filename().string() + ": " + reason);
       continue;
     }
-    for (const JudgedParameter& parameter : LoadJudged(draw / "intervals.json")) {
+    for (const JudgedParameter& parameter : LoadJudged(draw / kIntervalsFile)) {
       if (!deviations.contains(parameter.name)) names.push_back(parameter.name);
       deviations[parameter.name].push_back(parameter.deviations);
     }
@@ -346,13 +333,11 @@ void SaveIntervalReport(const IntervalReport& report, const std::filesystem::pat
   }
   chart.lines.push_back(
       {"if the intervals are right", Eigen::Vector2d(0, 1), Eigen::Vector2d(0, 1)});
-  WriteFileAtomically(folder / "intervals.json",
-                      nlohmann::json({{"schema_version", kIntervalsVersion},
-                                      {"missing", report.missing},
-                                      {"failed", report.failed.size()},
-                                      {"parameters", tallies}})
-                              .dump(2) +
-                          "\n");
+  const nlohmann::json all = {{"schema_version", kIntervalsVersion},
+                              {"missing", report.missing},
+                              {"failed", report.failed.size()},
+                              {"parameters", tallies}};
+  WriteFileAtomically(folder / kIntervalsFile, all.dump(2) + "\n");
   WriteFileAtomically(folder / "intervals.txt", IntervalReportInWords(report));
   WriteLineChart(folder / "intervals.svg", chart);
 }

@@ -26,7 +26,6 @@
 namespace lacuna {
 
 struct IntervalSuite {
-  std::string name;
   uint64_t seed = 0;
   int draws = 0;
   int recordings = 1;            // of each draw, 1 or 2
@@ -75,9 +74,8 @@ struct IntervalReport {
   std::vector<std::string> missing;  // effects that the truth has and the model lacks
 };
 
-// Makes and fits the draws of the suite that are not in the folder yet, in `workers` processes.
-// Each draw keeps its truth.json and intervals.json; failed.txt says why a draw has none. Returns
-// the result of ShareOut (core/workers.h).
+// Makes and fits the draws of the suite that have no intervals.json in the folder yet: see WorkOn
+// (trials/case_files.h).
 int RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& folder, int workers);
 // Throws InputError if a file cannot be read.
 IntervalReport ReportIntervals(const std::filesystem::path& folder);

@@ -4,20 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <variant>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "diagnosis/candidates.h"
+#include "core/text_file.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
 #include "scan/random_bits.h"
+#include "trials/case_files.h"
 
 namespace lacuna {
 namespace {
+
+constexpr std::pair<TrialGroup, const char*> kGroups[] = {
+    {TrialGroup::kControl, "control"},      {TrialGroup::kHardControl, "hard_control"},
+    {TrialGroup::kOneEffect, "one_effect"}, {TrialGroup::kPair, "pair"},
+    {TrialGroup::kRemoved, "removed"},      {TrialGroup::kIntervals, "intervals"}};
 
 // A stream of random numbers. Draw number n depends on the seed, the stream and n alone.
 class Draws {
@@ -101,8 +107,16 @@ bool IsLaw(const HiddenEffect& hidden) {
   return FindEntry(hidden.type)->kind == CatalogueEntry::Kind::kMaterial;
 }
 
-bool IsInEveryModel(const std::string& type) {
-  return FindEntry(type)->card->trial.is_in_every_model;
+std::string TrialGroupName(TrialGroup group) {
+  for (const auto& [value, name] : kGroups)
+    if (value == group) return name;
+  return "";
+}
+
+TrialGroup TrialGroupFromName(const std::string& name) {
+  for (const auto& [value, text] : kGroups)
+    if (text == name) return value;
+  throw InputError("\"" + name + "\" is not a group of sealed cases");
 }
 
 bool TrialCase::Hides(const std::string& type) const {
@@ -116,7 +130,7 @@ NuisanceTrial TrialCase::Disturbance() const {
   return {};
 }
 
-TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t seed, int recordings,
+TrialCase DrawCase(const std::string& name, TrialGroup group, uint64_t seed, int recordings,
                    bool is_scanned, const std::string& nuisance) {
   TrialCase trial;
   trial.name = name;
@@ -165,12 +179,9 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
 std::optional<TrialLoadCell> DrawLoadCell(uint64_t seed, double share) {
   Draws draws(seed, kLoadCellStream);
   if (!(draws.Between(0, 1) < share)) return std::nullopt;
-  // The bar weighs about 0.3 N, and the hand pulls with 0.1 N.
-  TrialLoadCell cell;
-  cell.deviation = draws.LogBetween(0.002, 0.02);
-  cell.tare_deviation = 0.05;
-  cell.delay_deviation = 0.002;  // a fifth of the time between two frames
-  return cell;
+  // The bar weighs about 0.3 N, the hand pulls with 0.1 N, and frames are 0.01 s apart.
+  return TrialLoadCell{
+      .deviation = draws.LogBetween(0.002, 0.02), .tare_deviation = 0.05, .delay_deviation = 0.002};
 }
 
 HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_t seed) {
@@ -225,7 +236,7 @@ std::string TextOfCase(const TrialCase& trial) {
         {{"type", effect.type}, {"parameters", effect.parameters}, {"starts", effect.starts}});
   nlohmann::json all = {{"schema_version", 1},
                         {"name", trial.name},
-                        {"group", trial.group},
+                        {"group", TrialGroupName(trial.group)},
                         {"seed", trial.seed},
                         {"recordings", trial.recordings},
                         {"is_scanned", trial.is_scanned},
@@ -251,18 +262,17 @@ std::string TextOfCase(const TrialCase& trial) {
   return all.dump(2) + "\n";
 }
 
-void SaveCase(const TrialCase& trial, const std::filesystem::path& file) {
-  WriteFileAtomically(file, TextOfCase(trial));
+void SaveCase(const TrialCase& trial, const std::filesystem::path& folder) {
+  WriteFileAtomically(folder / kTruthFile, TextOfCase(trial));
 }
 
-TrialCase LoadCase(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError(file.string() + ": cannot be opened");
+TrialCase LoadCase(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / kTruthFile;
   try {
-    const auto json = nlohmann::json::parse(stream);
+    const auto json = nlohmann::json::parse(ReadWholeFile(file));
     TrialCase trial;
     trial.name = json.at("name");
-    trial.group = json.at("group");
+    trial.group = NamingWhere(file.string(), [&] { return TrialGroupFromName(json.at("group")); });
     trial.seed = json.at("seed");
     trial.recordings = json.at("recordings");
     trial.is_scanned = json.value("is_scanned", false);
@@ -290,24 +300,13 @@ TrialCase LoadCase(const std::filesystem::path& file) {
     trial.noise_correlation_time = json.at("noise_correlation_time");
     if (json.contains("load_cell")) {
       const auto& cell = json.at("load_cell");
-      trial.load_cell =
-          TrialLoadCell{cell.at("deviation").get<double>(), cell.at("tare_deviation").get<double>(),
-                        cell.at("delay_deviation").get<double>()};
+      trial.load_cell = TrialLoadCell{cell.at("deviation"), cell.at("tare_deviation"),
+                                      cell.at("delay_deviation")};
     }
     return trial;
   } catch (const nlohmann::json::exception& problem) {
     throw InputError(fmt::format("{}: {}", file.string(), problem.what()));
   }
-}
-
-std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder) {
-  if (!std::filesystem::is_directory(folder))
-    throw InputError(folder.string() + ": there is no such folder");
-  std::vector<std::filesystem::path> cases;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (std::filesystem::exists(entry.path() / "truth.json")) cases.push_back(entry.path());
-  std::sort(cases.begin(), cases.end());
-  return cases;
 }
 
 double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j) {

@@ -34,8 +34,6 @@ struct HiddenEffect {
 std::shared_ptr<const Effect> MakeHidden(const HiddenEffect& hidden);
 // Whether the hidden effect is an elasticity law.
 bool IsLaw(const HiddenEffect& hidden);
-// Whether the model of every case contains the effect unless it is hidden.
-bool IsInEveryModel(const std::string& type);
 
 // An effect that the model has too, but whose parameters it does not know.
 struct ModelledEffect {
@@ -61,11 +59,21 @@ struct TrialLoadCell {
   double delay_deviation = 0;  // s, σ of the delay
 };
 
+enum class TrialGroup {
+  kControl,      // nothing is hidden
+  kHardControl,  // nothing is hidden, and the measurement has a fault
+  kOneEffect,    // one effect is hidden
+  kPair,         // two effects are hidden
+  kRemoved,      // one effect is hidden and is not in the library of the diagnosis
+  kIntervals,    // a draw of trials/interval_trials.h
+};
+// The name in files and reports, e.g. "hard_control", and the reverse, which throws InputError.
+std::string TrialGroupName(TrialGroup group);
+TrialGroup TrialGroupFromName(const std::string& name);
+
 struct TrialCase {
   std::string name;
-  // "control", "hard_control", "one_effect", "pair", "removed" or "intervals". A removed effect is
-  // hidden and not in the library of the diagnosis; "intervals": see trials/interval_trials.h.
-  std::string group;
+  TrialGroup group = TrialGroup::kControl;
   uint64_t seed = 0;
   int recordings = 1;
   bool is_scanned = false;  // observed by depth cameras instead of markers
@@ -98,7 +106,7 @@ struct TrialCase {
 };
 
 // Draws everything that depends on the seed, except hidden effects.
-TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t seed, int recordings,
+TrialCase DrawCase(const std::string& name, TrialGroup group, uint64_t seed, int recordings,
                    bool is_scanned, const std::string& nuisance);
 
 // Draws whether a case of this seed has a load cell, with the probability `share`, and its noise.
@@ -112,13 +120,9 @@ HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_
 
 // The text of truth.json.
 std::string TextOfCase(const TrialCase& trial);
-// Write and read truth.json. Both throw InputError if the file cannot be used.
-void SaveCase(const TrialCase& trial, const std::filesystem::path& file);
-TrialCase LoadCase(const std::filesystem::path& file);
-
-// The folders of the cases of a suite, sorted by name. Throws InputError if the suite has no
-// folder.
-std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder);
+// Write and read truth.json in a folder. Both throw InputError if the file cannot be used.
+void SaveCase(const TrialCase& trial, const std::filesystem::path& folder);
+TrialCase LoadCase(const std::filesystem::path& folder);
 
 // Number (i, j) of a stream of standard normal draws; it depends on the seed of the case and on
 // these three numbers alone.

@@ -145,12 +145,12 @@ std::vector<RateLine> LinesOf(const TrialRates& rates) {
 TrialRates RatesOf(const std::vector<FinishedTrial>& finished) {
   TrialRates rates;
   for (const FinishedTrial& one : finished) {
-    const std::string& group = one.trial.group;
+    const TrialGroup group = one.trial.group;
     const bool is_stated = one.outcome.verdict == Verdict::kMissing;
-    if (group == "control") Add(is_stated, &rates.named_in_controls);
-    if (group == "hard_control") Add(is_stated, &rates.named_in_hard_controls);
-    if (group == "one_effect") CountOneEffect(one, &rates);
-    if (group == "removed")
+    if (group == TrialGroup::kControl) Add(is_stated, &rates.named_in_controls);
+    if (group == TrialGroup::kHardControl) Add(is_stated, &rates.named_in_hard_controls);
+    if (group == TrialGroup::kOneEffect) CountOneEffect(one, &rates);
+    if (group == TrialGroup::kRemoved)
       CountRemoved(one, &rates);
     else if (one.outcome.verdict != Verdict::kNotInLibrary)
       CountReliability(one, &rates);

@@ -8,6 +8,7 @@
 
 #include "core/atomic_file.h"
 #include "core/median.h"
+#include "trials/case_files.h"
 #include "trials/trial_case.h"
 #include "trials/trial_run.h"
 
@@ -21,38 +22,31 @@ double MedianOrZero(const std::vector<double>& values) {
   return values.empty() ? 0 : Median(values);
 }
 
-std::string GroupOf(const TrialCase& trial) {
-  if (trial.group == "one_effect")
-    return fmt::format("one_effect, {} rec, {:g} x", trial.recordings, trial.hidden[0].factor);
-  if (trial.group == "hard_control") return "hard_control " + trial.nuisance;
-  return fmt::format("{}, {} rec", trial.group, trial.recordings);
-}
-
-bool Contains(const std::vector<std::string>& list, const std::string& what) {
-  return std::find(list.begin(), list.end(), what) != list.end();
-}
-
-bool IsHidden(const TrialCase& trial, const std::string& type) {
-  return trial.group != "removed" &&
-         std::any_of(trial.hidden.begin(), trial.hidden.end(),
-                     [&](const HiddenEffect& hidden) { return hidden.type == type; });
+std::string RowOf(const TrialCase& trial) {
+  const std::string group = TrialGroupName(trial.group);
+  if (trial.group == TrialGroup::kHardControl) return group + " " + trial.nuisance;
+  const std::string row = fmt::format("{}, {} rec", group, trial.recordings);
+  if (trial.group != TrialGroup::kOneEffect) return row;
+  return fmt::format("{}, {:g} x", row, trial.hidden[0].factor);
 }
 
 void Count(const TrialCase& trial, const TrialOutcome& outcome, TrialTally* tally) {
   ++tally->cases;
   ++tally->verdicts[VerdictName(outcome.verdict)];
   const bool named = outcome.verdict == Verdict::kMissing;
-  const bool right = named && IsHidden(trial, outcome.named[0]);
+  const bool is_removed = trial.group == TrialGroup::kRemoved;
+  const bool right = named && !is_removed && trial.Hides(outcome.named[0]);
   tally->top1 += right;
   tally->wrong += named && !right;
-  if (trial.hidden.empty() || trial.group == "removed") return;
+  if (trial.hidden.empty() || is_removed) return;
   ++tally->nameable;
   const std::string& truth = trial.hidden[0].type;
   const bool second = outcome.ranked.size() > 1 &&
                       (named || outcome.verdict == Verdict::kAmbiguous) &&
                       (outcome.ranked[0] == truth || outcome.ranked[1] == truth);
-  tally->top2 +=
-      right || second || (outcome.verdict == Verdict::kAmbiguous && Contains(outcome.named, truth));
+  const bool listed = outcome.verdict == Verdict::kAmbiguous &&
+                      std::count(outcome.named.begin(), outcome.named.end(), truth) > 0;
+  tally->top2 += right || second || listed;
   tally->ranked_first += !outcome.ranked.empty() && outcome.ranked[0] == truth;
   if (!outcome.has_truth) return;
   ++tally->fitted;
@@ -76,21 +70,20 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
   std::map<std::string, std::vector<double>> before, after;
   std::vector<FinishedTrial> finished;
   for (const std::filesystem::path& own : CasesIn(folder)) {
-    const TrialCase trial = LoadCase(own / "truth.json");
-    if (!std::filesystem::exists(own / "outcome.json")) {
+    const TrialCase trial = LoadCase(own);
+    if (!std::filesystem::exists(own / kOutcomeFile)) {
       report.unfinished.push_back(trial.name);
       continue;
     }
-    const TrialOutcome outcome = LoadOutcome(own / "outcome.json");
+    const TrialOutcome outcome = LoadTrialOutcome(own);
     finished.push_back({trial, outcome});
-    const std::string group = GroupOf(trial);
+    const std::string group = RowOf(trial);
     tallies[group].group = group;
     Count(trial, outcome, &tallies[group]);
     before[group].push_back(outcome.error_before);
     if (outcome.has_truth) after[group].push_back(outcome.error_after);
-    const std::string truth = trial.hidden.empty()       ? "nothing"
-                              : trial.group == "removed" ? trial.hidden[0].type + " (removed)"
-                                                         : trial.hidden[0].type;
+    std::string truth = trial.hidden.empty() ? "nothing" : trial.hidden[0].type;
+    if (trial.group == TrialGroup::kRemoved) truth += " (removed)";
     const std::string said =
         outcome.verdict == Verdict::kMissing ? outcome.named[0] : VerdictName(outcome.verdict);
     ++report.confusion[truth][said];

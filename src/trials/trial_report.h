@@ -18,8 +18,7 @@ namespace lacuna {
 struct TrialTally {
   std::string group;  // e.g. "hard_control grip", "one_effect, 2 rec, 4 x"
   int cases = 0;
-  int nameable =
-      0;  // cases that hide an effect of the library; top1 and top2 are counted among them
+  int nameable = 0;  // cases that hide an effect of the library; top1 and top2 are among them
   int top1 = 0, top2 = 0, wrong = 0;
   int ranked_first = 0;  // the hidden effect is first in the ranking, whatever the verdict
   std::map<std::string, int> verdicts;

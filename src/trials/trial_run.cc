@@ -12,23 +12,25 @@
 
 #include "calibration/adaptive_time_step.h"
 #include "core/atomic_file.h"
-#include "core/claim.h"
 #include "core/error.h"
 #include "core/json_number.h"
-#include "core/workers.h"
+#include "core/text_file.h"
 #include "diagnosis/decision.h"
 #include "diagnosis/decision_store.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "diagnosis/recording_power.h"
-#include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
+#include "trials/case_files.h"
 
 namespace lacuna {
 namespace {
 
 constexpr int kSchemaVersion = 4;  // of outcome.json
+// The folder with the input of the decision with the hidden effect among the hypotheses, of a case
+// in which the diagnosis does not know it.
+constexpr char kWithRemovedFolder[] = "decision_with_removed";
 
 const RankedEffect* Find(const Diagnosis& diagnosis, const std::string& type) {
   for (const RankedEffect& effect : diagnosis.ranking)
@@ -54,9 +56,10 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
     Progress progress({.style = ProgressStyle::kSilent});
     const LinearisedMisfit misfit = problem.Linearise(values, false);
     const EffectRefit refit =
-        Refit({problem, values, misfit, &progress, nullptr, diagnosis.noise_level,
-               diagnosis.decision_input.baseline.model_error},
-              &effect->scored, {}, diagnosis.baseline_rms_over_sigma > kFarFromTruth);
+        Refit({{problem, values, misfit, &progress, nullptr, diagnosis.noise_level,
+                diagnosis.decision_input.baseline.model_error},
+               {}},
+              &effect->scored, {.is_far_off = diagnosis.baseline_rms_over_sigma > kFarFromTruth});
     if (!refit.message.empty()) return;
     sizes = refit.sizes;
     in_noise = refit.errors.without_nuisances;
@@ -77,23 +80,18 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   outcome->relative_error = size > 0 ? std::sqrt(difference / size) : 1;
 }
 
-// The input of the decision with the hidden effect among the hypotheses, of a case in which the
-// diagnosis does not know it.
-std::filesystem::path WithRemoved(const std::filesystem::path& output) {
-  return output / "decision_with_removed";
-}
-
 // `decided`: what the decision of the case was made from.
 std::optional<RecordedPower> Simulated(const TrialCase& trial, const DecisionInput& decided,
                                        const std::filesystem::path& output) {
   if (trial.hidden.size() != 1) return std::nullopt;
   const std::string& truth = trial.hidden.front().type;
-  const bool is_known = trial.group != "removed";
+  const bool is_known = trial.group != TrialGroup::kRemoved;
   // A residual that does not show the effect leaves no name.
   const RecordedPower invisible{.truth = {truth}, .open = 1, .most_wrong = ""};
   if (is_known) return PowerToFind(decided, truth, true).value_or(invisible);
-  if (!std::filesystem::exists(WithRemoved(output) / "decision.json")) return std::nullopt;
-  return PowerToFind(LoadDecisionInput(WithRemoved(output)), truth, false).value_or(invisible);
+  if (!std::filesystem::exists(output / kWithRemovedFolder / "decision.json")) return std::nullopt;
+  return PowerToFind(LoadDecisionInput(output / kWithRemovedFolder), truth, false)
+      .value_or(invisible);
 }
 
 void SetDecided(const DecisionRecord& decision, const DecisionInput& input, TrialOutcome* outcome) {
@@ -116,14 +114,9 @@ DecisionInput InputWithRemoved(const CalibrationProblem& problem, const Eigen::V
 
 }  // namespace
 
-std::filesystem::path DecisionOf(const std::filesystem::path& output) {
-  return output / "decision";
-}
-
-TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem::path& experiment,
-                     const std::filesystem::path& output) {
+TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem::path& output) {
   const auto began = std::chrono::steady_clock::now();
-  PredictionStudy study = ReadPredictionStudy(Config::Load(experiment));
+  PredictionStudy study = ReadPredictionStudy(Config::Load(output / kExperimentFile));
   const ReferenceBody reference = MakeReferenceBody(study);
   Progress progress({.style = ProgressStyle::kSilent});
   const Calibration calibration =
@@ -132,14 +125,11 @@ TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem:
   if (calibration.estimates.empty()) throw InputError(folder.string() + ": " + calibration.message);
   DiagnosisOptions options;
   // Before the diagnosis, only the list of effects removed from the library is used.
-  const std::filesystem::path without = folder / "without.txt";
-  if (std::filesystem::exists(without)) {
-    std::ifstream stream(without);
-    for (std::string type; std::getline(stream, type);) options.without.push_back(type);
-  }
+  std::ifstream without(folder / kWithoutFile);
+  for (std::string type; std::getline(without, type);) options.without.push_back(type);
   const Diagnosis diagnosis = Diagnose(problem, calibration.parameters, options, &progress);
-  SaveDecisionInput(diagnosis.decision_input, DecisionOf(output));
-  WriteDiagnosisFile(RecordOf(diagnosis), output / "diagnosis.json");
+  SaveDecisionInput(diagnosis.decision_input, output / kDecisionFolder);
+  WriteDiagnosisFile(RecordOf(diagnosis), output / kDiagnosisFile);
 
   TrialOutcome outcome;
   outcome.verdict = diagnosis.verdict;
@@ -150,10 +140,9 @@ TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem:
   std::vector<std::pair<double, std::string>> order;
   for (const RankedEffect& effect : diagnosis.ranking) {
     // Effects that were refitted rank before those that have a first-order score only.
-    const bool usable = effect.refitted && effect.refit_message.empty();
-    order.emplace_back(
-        usable ? effect.evidence : std::min(-1.0, effect.scored.score.evidence - 100),
-        effect.scored.candidate.type);
+    order.emplace_back(effect.HasUsableRefit() ? effect.evidence
+                                               : std::min(-1.0, effect.scored.score.evidence - 100),
+                       effect.scored.candidate.type);
   }
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -162,21 +151,21 @@ TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem:
   if (order.size() > 1) outcome.second_evidence = order[1].first;
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 
-  const TrialCase trial = LoadCase(folder / "truth.json");
+  const TrialCase trial = LoadCase(folder);
   const double unit = EstimatedOverTrueNoise(trial, problem);
   outcome.error_before = diagnosis.errors.without_nuisances * unit;
   if (!outcome.named.empty())
     if (const RankedEffect* best = Find(diagnosis, outcome.named[0]))
       outcome.error_best = best->errors.without_nuisances * unit;
   if (!trial.hidden.empty()) Compare(trial, problem, calibration.parameters, diagnosis, &outcome);
-  if (trial.group == "removed")
+  if (trial.group == TrialGroup::kRemoved)
     SaveDecisionInput(InputWithRemoved(problem, calibration.parameters, diagnosis.time_step),
-                      WithRemoved(output));
+                      output / kWithRemovedFolder);
   outcome.simulated = Simulated(trial, diagnosis.decision_input, output);
   return outcome;
 }
 
-void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file) {
+void SaveTrialOutcome(const TrialOutcome& outcome, const std::filesystem::path& folder) {
   const nlohmann::json all = {
       {"schema_version", kSchemaVersion},
       {"verdict", VerdictName(outcome.verdict)},
@@ -200,14 +189,13 @@ void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file)
       {"relative_error", outcome.relative_error},
       {"covered", outcome.covered},
       {"seconds", outcome.seconds}};
-  WriteFileAtomically(file, all.dump(2) + "\n");
+  WriteFileAtomically(folder / kOutcomeFile, all.dump(2) + "\n");
 }
 
-TrialOutcome LoadOutcome(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError(file.string() + ": cannot be opened");
+TrialOutcome LoadTrialOutcome(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / kOutcomeFile;
   try {
-    const auto json = nlohmann::json::parse(stream);
+    const auto json = nlohmann::json::parse(ReadWholeFile(file));
     const int version = json.at("schema_version");
     if (version > kSchemaVersion)
       throw InputError(fmt::format("{}: schema_version {} is of a later version of the program",
@@ -246,35 +234,24 @@ TrialOutcome LoadOutcome(const std::filesystem::path& file) {
 }
 
 bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output) {
-  if (!std::filesystem::exists(DecisionOf(output) / "decision.json") ||
-      !std::filesystem::exists(output / "outcome.json"))
+  if (!std::filesystem::exists(output / kDecisionFolder / "decision.json") ||
+      !std::filesystem::exists(output / kOutcomeFile))
     return false;
-  const DecisionInput input = LoadDecisionInput(DecisionOf(output));
+  const DecisionInput input = LoadDecisionInput(output / kDecisionFolder);
   const Decision decision = Decide(input);
-  TrialOutcome outcome = LoadOutcome(output / "outcome.json");
+  TrialOutcome outcome = LoadTrialOutcome(output);
   outcome.verdict = decision.verdict;
   outcome.named = decision.names;
   SetDecided(decision.record, input, &outcome);
   outcome.simulated = Simulated(trial, input, output);
-  SaveOutcome(outcome, output / "outcome.json");
+  SaveTrialOutcome(outcome, output);
   return true;
 }
 
 int RunTrials(const std::filesystem::path& folder, int workers) {
   const std::vector<std::filesystem::path> cases = CasesIn(folder);
-  const auto keep_failure = [&](size_t k, const std::string& reason) {
-    WriteFileAtomically(cases[k] / "failed.txt", reason + "\n");
-  };
-  return ShareOut(cases.size(), {.workers = workers, .crashed = keep_failure}, [&](size_t k) {
-    const std::filesystem::path& own = cases[k];
-    const Claim claim(own / "claimed");
-    if (!claim.holds() || std::filesystem::exists(own / "outcome.json")) return;
-    try {
-      SaveOutcome(RunCase(own, own / "experiment.yaml", own), own / "outcome.json");
-    } catch (const InputError& problem) {
-      keep_failure(k, problem.what());
-    }
-  });
+  return WorkOn(cases, kOutcomeFile, workers,
+                [&](size_t k) { SaveTrialOutcome(RunCase(cases[k], cases[k]), cases[k]); });
 }
 
 }  // namespace lacuna

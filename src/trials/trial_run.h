@@ -48,28 +48,22 @@ struct TrialOutcome {
   double seconds = 0;         // wall time of fit and diagnosis
 };
 
-// Fits and diagnoses the case in `folder` according to `experiment`, and keeps diagnosis.json and
-// what it was decided from in `output`. The truth is opened only afterwards. Throws InputError if
-// the case cannot be read or fitted.
-TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem::path& experiment,
-                     const std::filesystem::path& output);
+// Fits and diagnoses the case in `folder` according to experiment.yaml in `output`, and keeps there
+// diagnosis.json and what it was decided from. `output` is `folder` unless a further recording is
+// diagnosed (trials/follow_up.h). The truth is opened only afterwards. Throws InputError if the
+// case cannot be read or fitted.
+TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem::path& output);
 
-// The folder of diagnosis output from which RunCase() decided (diagnosis/decision_store.h).
-std::filesystem::path DecisionOf(const std::filesystem::path& output);
-
-// Write and read outcome.json. Both throw InputError if the file cannot be used.
-void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file);
-TrialOutcome LoadOutcome(const std::filesystem::path& file);
+// Write and read outcome.json in a folder. Both throw InputError if the file cannot be used.
+void SaveTrialOutcome(const TrialOutcome& outcome, const std::filesystem::path& folder);
+TrialOutcome LoadTrialOutcome(const std::filesystem::path& folder);
 
 // Decides again upon what RunCase() has kept in `output`, with the rules as they are now, and
 // replaces what outcome.json there has from the decision. False where nothing was kept. Throws
 // InputError if a file cannot be read.
 bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output);
 
-// Runs all cases of a folder that have no outcome yet, each in a process of its own, `workers` at a
-// time. A case is claimed by a lock on a file in its folder, so that several calls may share the
-// suite. A case that fails gets the reason in failed.txt. Returns the result of ShareOut
-// (core/workers.h).
+// Diagnoses all cases of a folder that have no outcome yet: see WorkOn (trials/case_files.h).
 int RunTrials(const std::filesystem::path& folder, int workers);
 
 }  // namespace lacuna

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -18,6 +17,7 @@
 #include "geometry/rounded_box.h"
 #include "meshing/tetrahedralize.h"
 #include "prediction/reading_times.h"
+#include "trials/case_files.h"
 #include "trials/clamp_motion.h"
 #include "trials/trial_load_cell.h"
 #include "trials/trial_recording.h"
@@ -60,14 +60,10 @@ std::vector<std::shared_ptr<const Effect>> TrueEffects(const TrialCase& trial) {
 }
 
 std::vector<double> FrameTimes(const TrialCase& trial, int recording) {
-  const double deviation = trial.Disturbance().time_deviation;
-  std::vector<double> times;
-  for (int f = 0; f < kTrialFrames; ++f) {
-    double time = kTrialSpacing * f;
-    if (deviation > 0)
-      time += deviation * std::clamp(Gauss(trial, 40 + recording, f, 0), -2.0, 2.0);
-    times.push_back(time);
-  }
+  std::vector<double> times = StampedTimes();
+  if (const double deviation = trial.Disturbance().time_deviation; deviation > 0)
+    for (size_t f = 0; f < times.size(); ++f)
+      times[f] += deviation * std::clamp(Gauss(trial, 40 + recording, f, 0), -2.0, 2.0);
   return times;
 }
 
@@ -188,7 +184,7 @@ void SimulateCase(const TrialCase& trial, const std::filesystem::path& folder, b
         "{{half_space: {{point: [{} m, 0 m, 0 m], normal: [1, 0, 0]}}}}\n",
         name, kFitUntil, kRelease, trial.size[0] - kTrialFace);
   }
-  WriteFileAtomically(folder / "experiment.yaml", yaml);
+  WriteFileAtomically(folder / kExperimentFile, yaml);
 }
 
 }  // namespace lacuna

@@ -1,6 +1,7 @@
 #include "trials/trial_suite.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glog/logging.h>
 
 #include <algorithm>
@@ -9,22 +10,21 @@
 #include <numeric>
 #include <utility>
 
+#include "calibration/linear_misfit.h"
 #include "core/atomic_file.h"
 #include "core/claim.h"
 #include "core/error.h"
 #include "core/workers.h"
-#include "diagnosis/candidates.h"
-#include "diagnosis/effect_ranking.h"
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
 #include "effects/stiffness_damping.h"
-#include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
 #include "scan/random_bits.h"
+#include "trials/case_files.h"
 #include "trials/trial_load_cell.h"
 #include "trials/trial_simulation.h"
 
@@ -34,32 +34,18 @@ namespace {
 // Number of draws of a case until the detectable size of its effect is plausible.
 constexpr int kMostAttempts = 8;
 
-TrialCase DrawEffectCase(const std::string& name, const std::string& group,
-                         const std::vector<std::string>& types, double factor, int recordings,
-                         bool is_scanned, uint64_t seed) {
-  TrialCase trial = DrawCase(name, group, seed, recordings, is_scanned, "");
-  for (const std::string& type : types) {
-    trial.hidden.push_back(DrawHidden(type, trial, RandomBits({seed, trial.hidden.size()})));
-    trial.hidden.back().factor = factor;
-  }
-  return trial;
-}
-
-TrialCase EffectCase(const TrialSuite& suite, const std::string& group,
-                     const std::vector<std::string>& types, double factor, int recordings,
-                     size_t number) {
-  std::string name = fmt::format("{:04}-{}", number, group);
-  for (const std::string& type : types) name += "-" + type;
-  return DrawEffectCase(fmt::format("{}-{:g}x-{}rec", name, factor, recordings), group, types,
-                        factor, recordings, suite.is_scanned, RandomBits({suite.seed, number}));
+// Hides one more effect in the case.
+void Hide(const std::string& type, double factor, TrialCase* trial) {
+  trial->hidden.push_back(
+      DrawHidden(type, *trial, RandomBits({trial->seed, trial->hidden.size()})));
+  trial->hidden.back().factor = factor;
 }
 
 // The same case with the next seed.
 TrialCase DrawnAgain(const TrialCase& trial) {
-  std::vector<std::string> types;
-  for (const HiddenEffect& hidden : trial.hidden) types.push_back(hidden.type);
-  TrialCase again = DrawEffectCase(trial.name, trial.group, types, trial.hidden.front().factor,
-                                   trial.recordings, trial.is_scanned, RandomBits({trial.seed, 1}));
+  TrialCase again = DrawCase(trial.name, trial.group, RandomBits({trial.seed, 1}), trial.recordings,
+                             trial.is_scanned, trial.nuisance);
+  for (const HiddenEffect& hidden : trial.hidden) Hide(hidden.type, hidden.factor, &again);
   if (trial.load_cell) again.load_cell = DrawLoadCell(again.seed, 1);
   return again;
 }
@@ -110,14 +96,14 @@ std::vector<MisfitDirection> SizeDirections(const HiddenEffect& hidden) {
 }
 
 // The nuisances of the measurement from which a hidden effect must be distinguishable.
-// `grip_columns` are the columns of the directions of `grips`.
 std::vector<NuisanceCandidate> CaseNuisances(const CalibrationProblem& problem,
                                              const Eigen::VectorXd& values,
-                                             const LinearisedMisfit& misfit,
-                                             const GripMotions& grips,
-                                             const Eigen::MatrixXd& grip_columns) {
-  std::vector<NuisanceCandidate> nuisances = GripNuisances(grips, grip_columns);
-  for (NuisanceCandidate& nuisance : ModelNuisances({problem, values, misfit, grips, grip_columns}))
+                                             const LinearisedWithGrips& linearised) {
+  const LinearisedMisfit& misfit = linearised.misfit;
+  const Eigen::MatrixXd grip_columns = linearised.OfGrips();
+  std::vector<NuisanceCandidate> nuisances = GripNuisances(linearised.grips, grip_columns);
+  for (NuisanceCandidate& nuisance :
+       ModelNuisances({problem, values, misfit, linearised.grips, grip_columns}))
     nuisances.push_back(std::move(nuisance));
   for (NuisanceCandidate& nuisance : RecordingNuisances(problem, misfit, misfit.residual))
     nuisances.push_back(std::move(nuisance));
@@ -134,46 +120,38 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
                   const std::filesystem::path& folder) {
   TrialCase without = trial;
   without.hidden.clear();
-  if (IsInEveryModel(hidden.type)) {
+  if (FindEntry(hidden.type)->card->trial.is_in_every_model) {
     // The model must lack the effect. At size zero, its absence is no error of the model.
     without.hidden.push_back(hidden);
     for (const std::string& name : hidden.amplitude) without.hidden[0].parameters[name] = 0;
   }
   SimulateCase(without, folder, /*rough=*/true);
-  const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
+  const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / kExperimentFile));
   const ReferenceBody reference = MakeReferenceBody(study);
   const CalibrationProblem problem(study, reference.mesh);
   const Eigen::VectorXd values = TrueValues(trial, without, study, problem);
-  std::vector<MisfitDirection> directions = SizeDirections(hidden);
-  const GripMotions grips = MakeGripMotions(problem);
-  directions.insert(directions.end(), grips.directions.begin(), grips.directions.end());
-  LinearisedMisfit misfit = problem.Linearise(values, true, directions);
+  LinearisedWithGrips linearised = LineariseWithGrips(problem, values, SizeDirections(hidden));
+  LinearisedMisfit& misfit = linearised.misfit;
   if (!misfit.usable) throw InputError(trial.name + ": " + misfit.message);
   // The noise of a depth camera is that along its rays and stays as estimated.
   if (!trial.is_scanned)
     for (LinearisedMisfit::Part& part : misfit.parts)
       if (part.IsOfPoints()) part.errors.noise = trial.noise;
-  const Eigen::Index known = values.size();
-  Eigen::MatrixXd columns = misfit.jacobian.leftCols(known);
+  Eigen::MatrixXd columns = misfit.jacobian.leftCols(linearised.parameters);
   std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
-  const auto add = [&](const Eigen::MatrixXd& more, const std::vector<LinearPrior>& its_priors) {
-    columns.conservativeResize(Eigen::NoChange, columns.cols() + more.cols());
-    columns.rightCols(more.cols()) = more;
-    priors.insert(priors.end(), its_priors.begin(), its_priors.end());
-  };
-  const Eigen::Index of_grips = static_cast<Eigen::Index>(grips.directions.size());
-  for (const NuisanceCandidate& nuisance :
-       CaseNuisances(problem, values, misfit, grips, misfit.jacobian.rightCols(of_grips)))
-    add(nuisance.columns, nuisance.priors);
+  for (const NuisanceCandidate& nuisance : CaseNuisances(problem, values, linearised))
+    AppendColumns(nuisance.columns, nuisance.priors, &columns, &priors);
   const int own = static_cast<int>(columns.cols());
+  Eigen::VectorXd change;
   if (hidden.amplitude.empty()) {
-    add(ChangeBy(hidden, problem, values, misfit), {{}});
+    change = ChangeBy(hidden, problem, values, misfit);
   } else {
     Eigen::VectorXd amount(static_cast<Eigen::Index>(hidden.amplitude.size()));
     for (size_t k = 0; k < hidden.amplitude.size(); ++k)
       amount[static_cast<Eigen::Index>(k)] = hidden.parameters.at(hidden.amplitude[k]);
-    add(misfit.jacobian.middleCols(known, amount.size()) * amount, {{}});
+    change = linearised.OfDirections() * amount;
   }
+  AppendColumns(change, {LinearPrior{}}, &columns, &priors);
   const LinearGaussianModel model(
       WhitenedRows(misfit.residual, misfit, trial.noise_correlation_time, false),
       WhitenedRows(columns, misfit, trial.noise_correlation_time, false), priors);
@@ -196,10 +174,10 @@ bool IsPlausible(const HiddenEffect& hidden) {
 
 void SimulateAndSeal(const TrialCase& trial, const std::filesystem::path& folder) {
   SimulateCase(trial, folder);
-  if (trial.group != "removed") return;
+  if (trial.group != TrialGroup::kRemoved) return;
   std::string types;
   for (const HiddenEffect& hidden : trial.hidden) types += hidden.type + "\n";
-  WriteFileAtomically(folder / "without.txt", types);
+  WriteFileAtomically(folder / kWithoutFile, types);
 }
 
 // Determines the sizes of the hidden effects and simulates the case. Returns the reason of a
@@ -232,7 +210,7 @@ std::vector<std::string> ReadEffectTypes(const Config& config, const std::string
 TrialSuite ReadTrialSuite(const Config& config) {
   TrialSuite suite;
   config.Integer("schema_version", 1, 1);
-  suite.name = config.Text("name");
+  config.Text("name");
   constexpr int kMost = 1'000'000;
   suite.seed = static_cast<uint64_t>(config.Integer("seed", 0, kMost));
   suite.controls = config.Integer("controls", 0, kMost, 0);
@@ -253,34 +231,43 @@ TrialSuite ReadTrialSuite(const Config& config) {
 
 std::vector<TrialCase> CasesOf(const TrialSuite& suite) {
   std::vector<TrialCase> cases;
-  const auto control = [&](const std::string& group, const std::string& nuisance, size_t k) {
+  const auto add = [&](TrialGroup group, const std::string& what, int recordings,
+                       const std::string& nuisance) -> TrialCase& {
     const size_t number = cases.size();
-    const int recordings = suite.recordings[k % suite.recordings.size()];
-    cases.push_back(DrawCase(fmt::format("{:04}-{}{}-{}rec", number, group,
-                                         nuisance.empty() ? "" : "-" + nuisance, recordings),
-                             group, RandomBits({suite.seed, number}), recordings, suite.is_scanned,
-                             nuisance));
+    const std::string name =
+        fmt::format("{:04}-{}{}-{}rec", number, TrialGroupName(group), what, recordings);
+    return cases.emplace_back(DrawCase(name, group, RandomBits({suite.seed, number}), recordings,
+                                       suite.is_scanned, nuisance));
   };
-  for (int k = 0; k < suite.controls; ++k) control("control", "", k);
+  const auto hide = [&](TrialGroup group, const std::vector<std::string>& types, double factor,
+                        int recordings) {
+    TrialCase& trial =
+        add(group, fmt::format("-{}-{:g}x", fmt::join(types, "-"), factor), recordings, "");
+    for (const std::string& type : types) Hide(type, factor, &trial);
+  };
+  const size_t counts = suite.recordings.size();
+  for (int k = 0; k < suite.controls; ++k)
+    add(TrialGroup::kControl, "", suite.recordings[k % counts], "");
   const std::vector<NuisanceTrial> disturbances = NuisanceControls();
-  for (int k = 0; k < suite.hard_controls; ++k)
-    control("hard_control",
-            disturbances[(k / suite.recordings.size()) % disturbances.size()].control, k);
+  for (int k = 0; k < suite.hard_controls; ++k) {
+    const std::string& nuisance = disturbances[(k / counts) % disturbances.size()].control;
+    add(TrialGroup::kHardControl, "-" + nuisance, suite.recordings[k % counts], nuisance);
+  }
   const int largest = *std::max_element(suite.factors.begin(), suite.factors.end());
   for (const std::string& type : suite.removed)
     for (const int recordings : suite.recordings)
-      cases.push_back(EffectCase(suite, "removed", {type}, largest, recordings, cases.size()));
+      hide(TrialGroup::kRemoved, {type}, largest, recordings);
   for (int k = 0; k < suite.pairs; ++k) {
     const uint64_t draw = RandomBits({suite.seed, 7, static_cast<uint64_t>(k)});
     const size_t count = suite.effects.size();
     const size_t first = draw % count, second = (first + 1 + (draw >> 20) % (count - 1)) % count;
-    cases.push_back(EffectCase(suite, "pair", {suite.effects[first], suite.effects[second]},
-                               largest, suite.recordings.back(), cases.size()));
+    hide(TrialGroup::kPair, {suite.effects[first], suite.effects[second]}, largest,
+         suite.recordings.back());
   }
   for (const int factor : suite.factors)
     for (const std::string& type : suite.effects)
       for (const int recordings : suite.recordings)
-        cases.push_back(EffectCase(suite, "one_effect", {type}, factor, recordings, cases.size()));
+        hide(TrialGroup::kOneEffect, {type}, factor, recordings);
   for (TrialCase& trial : cases) {
     trial.load_cell = DrawLoadCell(trial.seed, suite.load_cells);
     if (trial.load_cell) trial.name += "-cell";
@@ -292,10 +279,9 @@ bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
   const std::filesystem::path own = folder / trial.name;
   if (std::filesystem::exists(own / "skipped.txt")) return false;
   MakeFolder(own);
-  if (std::filesystem::exists(own / "truth.json")) {
+  if (std::filesystem::exists(own / kTruthFile)) {
     // If only the truth was kept, the recordings are simulated again.
-    if (!std::filesystem::exists(own / "experiment.yaml"))
-      SimulateAndSeal(LoadCase(own / "truth.json"), own);
+    if (!std::filesystem::exists(own / kExperimentFile)) SimulateAndSeal(LoadCase(own), own);
     return true;
   }
   std::string reasons;
@@ -309,7 +295,7 @@ bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
     }
     trial = DrawnAgain(trial);
   }
-  SaveCase(trial, own / "truth.json");
+  SaveCase(trial, own);
   return true;
 }
 
@@ -318,7 +304,7 @@ int MakeTrials(const TrialSuite& suite, const std::filesystem::path& folder, int
   MakeFolder(folder);
   for (const TrialCase& trial : cases) MakeFolder(folder / trial.name);
   return ShareOut(cases.size(), {.workers = workers}, [&](size_t k) {
-    const Claim claim(folder / cases[k].name / "claimed");
+    const Claim claim(folder / cases[k].name / kClaimFile);
     if (claim.holds()) MakeCase(cases[k], folder);
   });
 }

@@ -9,13 +9,11 @@
 #include <vector>
 
 #include "core/config.h"
-#include "core/progress.h"
 #include "trials/trial_case.h"
 
 namespace lacuna {
 
 struct TrialSuite {
-  std::string name;
   // Suites that tune the diagnosis and suites that are reported must have different seeds.
   uint64_t seed = 0;
   int controls = 0, hard_controls = 0;  // number of cases without a hidden effect

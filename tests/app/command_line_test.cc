@@ -131,7 +131,8 @@ void ExpectUnderstood(const std::string& yaml, const CatalogueEntry& entry) {
   if (entry.kind == CatalogueEntry::Kind::kMaterial) {
     ASSERT_NO_THROW(effect = MakeMaterial(config.Child("material")));
   } else {
-    ASSERT_NO_THROW(effect = MakeEffect(config.Items("effects").at(0), material.get()));
+    ASSERT_NO_THROW(effect = MakeEffect(config.Items("effects").at(0), material.get(),
+                                        Eigen::Vector3d(0, 0, -9.80665)));
   }
   EXPECT_NO_THROW(config.RefuseUnknownKeys());
   EXPECT_EQ(effect->Card().type, entry.card->type);

@@ -57,12 +57,12 @@ TEST(TrialLoadCells, LeaveEverythingElseOfACaseAsItIs) {
 
 TEST(TrialLoadCells, AreKeptWithTheCase) {
   const TemporaryFolder folder;
-  TrialCase trial = DrawCase("kept", "control", 5, 1, false, "");
+  TrialCase trial = DrawCase("kept", TrialGroup::kControl, 5, 1, false, "");
   trial.load_cell = DrawLoadCell(trial.seed, 1);
   ASSERT_TRUE(trial.load_cell.has_value());
   EXPECT_FALSE(DrawLoadCell(trial.seed, 0).has_value());
-  SaveCase(trial, folder / "truth.json");
-  EXPECT_EQ(TextOfCase(LoadCase(folder / "truth.json")), TextOfCase(trial));
+  SaveCase(trial, folder.Path());
+  EXPECT_EQ(TextOfCase(LoadCase(folder.Path())), TextOfCase(trial));
 }
 
 TEST(TrialLoadCells, HaveErrorsThatAreDrawnFromTheirPriors) {
@@ -85,7 +85,7 @@ TEST(TrialLoadCells, HaveErrorsThatAreDrawnFromTheirPriors) {
 // moves from 0.25 s on.
 TEST(TrialLoadCells, ReadTheForceOfTheClampLateWithAnOffset) {
   constexpr double kDelay = 0.004;  // s, and the time between two stamps of the motion
-  TrialCase trial = DrawCase("late", "control", 5, 1, false, "");
+  TrialCase trial = DrawCase("late", TrialGroup::kControl, 5, 1, false, "");
   trial.load_cell = DrawLoadCell(trial.seed, 1);
   trial.load_cell->delay_deviation *= kDelay / CellDelay(trial, 0);
   std::vector<double> stamps = {0.05};
@@ -120,7 +120,7 @@ TEST(TrialLoadCells, ReadTheForceOfTheClampLateWithAnOffset) {
 
 TEST(TrialLoadCells, AreInTheRecordingsOfACaseWhoseMarkersStay) {
   const TemporaryFolder folder;
-  TrialCase trial = DrawCase("with", "control", 5, 1, false, "");
+  TrialCase trial = DrawCase("with", TrialGroup::kControl, 5, 1, false, "");
   SimulateCase(trial, folder / "without", /*rough=*/true);
   trial.load_cell = DrawLoadCell(trial.seed, 1);
   SimulateCase(trial, folder / "with", /*rough=*/true);
@@ -151,7 +151,7 @@ TEST(TrialLoadCells, AreCountedInTheDetectableSizeOfAHiddenEffect) {
   ASSERT_EQ(cases.size(), 1u);
   ASSERT_TRUE(MakeCase(cases[0], folder.Path()));
   const std::filesystem::path own = folder / cases[0].name;
-  const TrialCase sealed = LoadCase(own / "truth.json");
+  const TrialCase sealed = LoadCase(own);
   ASSERT_TRUE(sealed.load_cell.has_value());
   EXPECT_GT(sealed.hidden.at(0).parameters.at("coefficient"), 0.1);  // kg/m³; air has about 1
   EXPECT_THAT(FileContent(own / "recording_1/recording.yaml"), HasSubstr("measured_force"));

@@ -54,14 +54,14 @@ TEST(TrialSuite, HasEveryGroupAndIsReproducible) {
   }
   for (const char* nuisance : {"grip", "bad_frame", "coarse_mesh", "time_jitter"})
     EXPECT_THAT(nuisances, Contains(nuisance));
-  EXPECT_EQ(cases[6].group, "removed");
+  EXPECT_EQ(cases[6].group, TrialGroup::kRemoved);
   EXPECT_EQ(cases[7].hidden[0].factor, 1);
   EXPECT_EQ(cases[8].hidden[0].factor, 4);
 }
 
 TEST(TrialSimulation, TheTrueModelFitsTheDepthCameras) {
   const TemporaryFolder folder;
-  const TrialCase trial = DrawCase("scanned", "control", 5, 1, /*is_scanned=*/true, "");
+  const TrialCase trial = DrawCase("scanned", TrialGroup::kControl, 5, 1, /*is_scanned=*/true, "");
   SimulateCase(trial, folder.Path(), /*rough=*/true);
   const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
   ASSERT_NE(study.recordings.at(0).scans, nullptr);
@@ -72,8 +72,8 @@ TEST(TrialSimulation, TheTrueModelFitsTheDepthCameras) {
   values.tail(3) = trial.hold_forces[0];
   const Prediction at_truth = problem.Predict(values, false);
   ASSERT_TRUE(at_truth.usable) << at_truth.message;
-  EXPECT_LT(RootMeanSquare(at_truth.residual), 1.5);
-  EXPECT_GT(RootMeanSquare(problem.Predict(problem.Start(), false).residual), 5);
+  EXPECT_LT(RootMeanSquare(at_truth), 1.5);
+  EXPECT_GT(RootMeanSquare(problem.Predict(problem.Start(), false)), 5);
 }
 
 double Distance(const std::vector<Eigen::Matrix3Xd>& a, const std::vector<Eigen::Matrix3Xd>& b) {
@@ -85,7 +85,7 @@ double Distance(const std::vector<Eigen::Matrix3Xd>& a, const std::vector<Eigen:
 // The true bar does what each stock protocol says: the model with the true parameters predicts it.
 TEST(FollowUps, TheTrueBarFollowsThePlan) {
   const TemporaryFolder folder;
-  const TrialCase trial = DrawCase("planned", "control", 5, 1, false, "");
+  const TrialCase trial = DrawCase("planned", TrialGroup::kControl, 5, 1, false, "");
   SimulateCase(trial, folder.Path(), /*rough=*/true);
   const PredictionStudy read = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
   const TetMesh mesh = MakeReferenceBody(read).mesh;
@@ -137,7 +137,7 @@ TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
   ASSERT_EQ(cases.size(), 1u);
   ASSERT_TRUE(MakeCase(cases[0], folder.Path()));
   const std::filesystem::path own = folder / cases[0].name;
-  const TrialCase sealed = LoadCase(own / "truth.json");
+  const TrialCase sealed = LoadCase(own);
   EXPECT_EQ(sealed.hidden[0].type, "drag");
   EXPECT_GT(sealed.hidden[0].parameters.at("coefficient"), 1);  // kg/m³, above the drag of air
   // The truth that is kept of a reported case reproduces its recordings.
@@ -148,7 +148,7 @@ TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
   EXPECT_EQ(FileContent(own / "recording_1/markers.csv"), recorded);
 
   EXPECT_EQ(RunTrials(folder.Path(), 1), 0);
-  const TrialOutcome outcome = LoadOutcome(own / "outcome.json");
+  const TrialOutcome outcome = LoadTrialOutcome(own);
   ASSERT_TRUE(outcome.simulated);
   EXPECT_GT(outcome.simulated->named + outcome.simulated->open, 0.8);
   EXPECT_TRUE(std::isfinite(outcome.left_share));  // drag has explained something
@@ -173,7 +173,7 @@ TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
 
 TEST(TrialRates, CountsDecidableCasesAndReliability) {
   FinishedTrial finished;
-  finished.trial.group = "one_effect";
+  finished.trial.group = TrialGroup::kOneEffect;
   finished.trial.hidden = {{"drag", {}, {}, 2}};
   finished.outcome.verdict = Verdict::kMissing;
   finished.outcome.named = {"drag"};
@@ -190,13 +190,13 @@ TEST(TrialRates, CountsDecidableCasesAndReliability) {
   open.outcome.simulated->named = 0.3;
   std::swap(open.outcome.probabilities[0].probability, open.outcome.probabilities[1].probability);
   FinishedTrial removed = finished;
-  removed.trial.group = "removed";
+  removed.trial.group = TrialGroup::kRemoved;
   removed.outcome.verdict = Verdict::kNotInLibrary;
   removed.outcome.simulated =
       RecordedPower{.truth = {"drag"}, .wrong_member = 0.02, .unknown = 0.95, .most_wrong = ""};
   FinishedTrial faulty = finished;
   faulty.trial = {};
-  faulty.trial.group = "hard_control";
+  faulty.trial.group = TrialGroup::kHardControl;
   faulty.trial.nuisance = "time_jitter";
   faulty.outcome.verdict = Verdict::kNuisance;
   faulty.outcome.probabilities = {
@@ -242,8 +242,8 @@ TEST(TrialRates, CountsDecidableCasesAndReliability) {
 void Write(const std::filesystem::path& folder, const TrialCase& trial,
            const TrialOutcome& outcome) {
   MakeFolder(folder / trial.name);
-  SaveCase(trial, folder / trial.name / "truth.json");
-  SaveOutcome(outcome, folder / trial.name / "outcome.json");
+  SaveCase(trial, folder / trial.name);
+  SaveTrialOutcome(outcome, folder / trial.name);
 }
 
 TEST(TrialReport, CountsCorrectWrongAndAmbiguousVerdicts) {
@@ -328,7 +328,7 @@ TEST(FollowUps, AreCountedBesideWhatThePlanPredicted) {
     for (const auto& [own, outcome] :
          {std::pair{folders[0], right}, std::pair{folders[1], wrong}}) {
       MakeFolder(own);
-      SaveOutcome(outcome, own / "outcome.json");
+      SaveTrialOutcome(outcome, own);
     }
     SaveFollowUps(made, folder / trial.name);
   };

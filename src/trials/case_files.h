@@ -1,0 +1,36 @@
+// The files in the folder of a sealed case, and the work on the cases of a suite.
+#ifndef LACUNA_TRIALS_CASE_FILES_H_
+#define LACUNA_TRIALS_CASE_FILES_H_
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+namespace lacuna {
+
+inline constexpr char kTruthFile[] = "truth.json";  // a TrialCase
+inline constexpr char kExperimentFile[] = "experiment.yaml";
+inline constexpr char kWithoutFile[] = "without.txt";  // types of removed effects, one in each line
+// Of a diagnosis; the folder holds what it was decided from (diagnosis/decision_store.h).
+inline constexpr char kDiagnosisFile[] = "diagnosis.json";
+inline constexpr char kDecisionFolder[] = "decision";
+inline constexpr char kOutcomeFile[] = "outcome.json";  // a TrialOutcome, written last
+inline constexpr char kClaimFile[] = "claimed";         // the lock of a process that works here
+inline constexpr char kFailureFile[] = "failed.txt";    // why there is no result
+
+// The folders of the cases of a suite, those with a truth, sorted by name. Throws InputError if the
+// suite has no folder.
+std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder);
+
+// For each case k whose folder has no file `result` yet, a path relative to it, calls job(k), which
+// makes it, in a process of its own, `workers` at a time. A lock beside the result (core/claim.h)
+// lets several calls share the cases. If the job throws InputError or its process crashes,
+// failed.txt beside the result has the reason until a later call has made the result. Returns the
+// result of ShareOut (core/workers.h), for which an InputError is no failure.
+int WorkOn(const std::vector<std::filesystem::path>& cases, const std::filesystem::path& result,
+           int workers, const std::function<void(size_t k)>& job);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_TRIALS_CASE_FILES_H_

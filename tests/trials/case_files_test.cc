@@ -1,0 +1,93 @@
+#include "trials/case_files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "core/claim.h"
+#include "core/error.h"
+#include "support/temporary_folder.h"
+#include "trials/trial_case.h"
+#include "trials/trial_run.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+TEST(WorkOn, KeepsTheReasonOfAFailureUntilThereIsAResult) {
+  const TemporaryFolder folder;
+  const std::vector<fs::path> cases = {folder / "made", folder / "refused", folder / "thrown"};
+  // The results stand in a folder of their own, as those of follow-ups do.
+  const auto work = [&](bool fails) {
+    return WorkOn(cases, "next/result", 2, [&](size_t k) {
+      if (fails && k == 1) throw InputError("the mesh is empty");
+      if (fails && k == 2) throw std::runtime_error("out of luck");
+      std::ofstream(cases[k] / "next/result", std::ios::app) << "made";
+    });
+  };
+  EXPECT_EQ(work(true), 1);
+  EXPECT_EQ(FileContent(cases[0] / "next/result"), "made");
+  EXPECT_FALSE(fs::exists(cases[0] / "next/failed.txt"));
+  EXPECT_EQ(FileContent(cases[1] / "next/failed.txt"), "the mesh is empty\n");
+  EXPECT_THAT(FileContent(cases[2] / "next/failed.txt"), HasSubstr("its process ended"));
+  // As a call leaves it that is killed between the result and the removal.
+  std::ofstream(cases[0] / "next/failed.txt") << "an earlier reason\n";
+  EXPECT_EQ(work(false), 0);
+  for (const fs::path& own : cases) {
+    EXPECT_EQ(FileContent(own / "next/result"), "made") << "once, and no more";
+    EXPECT_FALSE(fs::exists(own / "next/failed.txt")) << own;
+  }
+}
+
+TEST(WorkOn, AnInputErrorAloneIsNoFailureOfAProcess) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(WorkOn({folder.Path()}, kOutcomeFile, 1, [](size_t) { throw InputError("no"); }), 0);
+  EXPECT_EQ(FileContent(folder / kFailureFile), "no\n");
+}
+
+TEST(WorkOn, LeavesACaseToTheProcessThatHasClaimedIt) {
+  const TemporaryFolder folder;
+  const Claim claim(folder / kClaimFile);
+  ASSERT_TRUE(claim.holds());
+  EXPECT_EQ(WorkOn({folder.Path()}, kOutcomeFile, 1,
+                   [&](size_t) { std::ofstream(folder / kOutcomeFile) << "made"; }),
+            0);
+  EXPECT_FALSE(fs::exists(folder / kOutcomeFile));
+}
+
+TEST(TrialGroup, AnUnknownNameIsRefusedWithTheFile) {
+  const TemporaryFolder folder;
+  std::string text = TextOfCase(DrawCase("x", TrialGroup::kHardControl, 5, 1, false, ""));
+  const size_t at = text.find("\"hard_control\"");
+  ASSERT_NE(at, std::string::npos);
+  std::ofstream(folder / kTruthFile) << text;
+  EXPECT_EQ(LoadCase(folder.Path()).group, TrialGroup::kHardControl);
+  std::ofstream(folder / kTruthFile) << text.replace(at, 14, "\"hard\"");
+  EXPECT_THAT(
+      [&] { LoadCase(folder.Path()); },
+      ThrowsMessage<InputError>(AllOf(HasSubstr("truth.json"), HasSubstr("\"hard\" is not"))));
+}
+
+// The names of the cases of these suites contain that of their group: 0006-hard_control-grip-1rec.
+TEST(ReportedSuites, CanStillBeRead) {
+  int cases = 0;
+  for (const char* suite : {"fresh_291129_cases", "fresh_301129_cases"})
+    for (const fs::path& own : CasesIn(fs::path(LACUNA_SOURCE_DIR) / "results" / suite)) {
+      const TrialCase trial = LoadCase(own);
+      EXPECT_EQ(trial.name, own.filename());
+      EXPECT_EQ(trial.name.find("-" + TrialGroupName(trial.group) + "-"), 4u) << own;
+      EXPECT_FALSE(VerdictName(LoadTrialOutcome(own).verdict).empty()) << own;
+      ++cases;
+    }
+  EXPECT_GT(cases, 100);
+}
+
+}  // namespace
+}  // namespace lacuna
