@@ -39,7 +39,7 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
   std::optional<StepErrors> step;
   Eigen::MatrixXd by_size;
   ForEachStudy(problem, 3, [&](int64_t k) {
-    if (k == 0) mesh = MakeOtherMesh(problem, values, misfit, /*fitted_only=*/true);
+    if (k == 0) mesh = MakeOtherMesh(problem, values, misfit);
     if (k == 1) step = FindStepErrors(problem, values, misfit);
     if (k == 2) by_size = ChangesBySize(problem, values, misfit);
   });

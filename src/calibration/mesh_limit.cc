@@ -148,13 +148,12 @@ class ChangeSearch {
  public:
   // `own`: the residual of the study's mesh. All references must outlive this.
   ChangeSearch(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-               const LinearisedMisfit& misfit, const Eigen::VectorXd& own, bool fitted_only)
+               const LinearisedMisfit& misfit, const Eigen::VectorXd& own)
       : parameters_(problem.parameters()),
         values_(values),
         misfit_(misfit),
         own_(own),
-        fitted_only_(fitted_only),
-        by_(WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit, 0, fitted_only)),
+        by_(WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit, 0, false)),
         prior_(PriorOfChange(problem, values)),
         model_(Eigen::VectorXd::Zero(by_.rows()), by_, prior_.priors) {}
 
@@ -213,7 +212,7 @@ class ChangeSearch {
     Tried tried{residual, {}};
     if (tried.residual.size() == misfit_.residual.size() && own_.size() == tried.residual.size() &&
         tried.residual != own_)
-      tried.difference = WhitenedRows(tried.residual - own_, misfit_, 0, fitted_only_);
+      tried.difference = WhitenedRows(tried.residual - own_, misfit_, 0, false);
     return tried;
   }
 
@@ -221,7 +220,6 @@ class ChangeSearch {
   const Eigen::VectorXd& values_;
   const LinearisedMisfit& misfit_;
   const Eigen::VectorXd& own_;
-  const bool fitted_only_;
   const Eigen::MatrixXd by_;
   const ChangePrior prior_;
   const LinearGaussianModel model_;
@@ -237,8 +235,7 @@ bool IsSame(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
 
 std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
-                                       const LinearisedMisfit& misfit, bool fitted_only,
-                                       const OtherMesh* known) {
+                                       const LinearisedMisfit& misfit, const OtherMesh* known) {
   const PredictionStudy study = WithLongSteps(problem);
   const TetMesh& own = problem.body()->mesh;
   const double ratio = RatioFor(problem, misfit);
@@ -246,7 +243,7 @@ std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
   if (!other) return std::nullopt;
   OtherMesh mesh{other->ratio, Eigen::VectorXd::Zero(values.size()), {}, {}};
   mesh.own = CalibrationProblem(study, own).Linearise(values, false, {}, nullptr, &misfit).residual;
-  const ChangeSearch search(problem, values, misfit, mesh.own, fitted_only);
+  const ChangeSearch search(problem, values, misfit, mesh.own);
   bool is_simulated = false;
   if (known != nullptr) {
     mesh.change = known->ToRatio(mesh.ratio) * known->change;

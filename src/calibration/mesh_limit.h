@@ -42,14 +42,14 @@ struct OtherMesh {
   double ToRatio(double other_ratio) const;
 };
 
-// `misfit` is that at `values`, with its Jacobian. `fitted_only`: compare the motions in the fitted
-// frames alone. `known`: what was found at these values or near them, perhaps with other frames
-// compared; where the study's mesh moves as it did then, the other one is not simulated again at
-// that change. Null: nothing is known. Returns nothing where another mesh cannot be made
+// `misfit` is that at `values`, with its Jacobian. The motions are compared in all frames of the
+// fitted recordings. `known`: what was found at these values or near them; where the study's mesh
+// moves as it did then, the other one is not simulated again at that change. Null: nothing is
+// known. Returns nothing where another mesh cannot be made
 // (calibration/other_elements.h) or cannot be simulated. Throws Interrupted.
 std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
-                                       const LinearisedMisfit& misfit, bool fitted_only,
+                                       const LinearisedMisfit& misfit,
                                        const OtherMesh* known = nullptr);
 
 // Writes other_mesh.json and other_mesh.npy into a folder, and reads them; nothing where the folder

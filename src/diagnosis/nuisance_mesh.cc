@@ -40,7 +40,7 @@ NuisanceCard Card() {
 
 std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   const std::optional<OtherMesh> mesh =
-      MakeOtherMesh(at.problem, at.values, at.misfit, /*fitted_only=*/false, at.other_mesh);
+      MakeOtherMesh(at.problem, at.values, at.misfit, at.other_mesh);
   if (!mesh) return std::nullopt;
   // Between the finest mesh, which is the other or the model's own, and the other.
   const double halfway = mesh->IsFiner() ? mesh->ratio / 2 : 0.5;

@@ -70,7 +70,7 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   EXPECT_LT(estimate.low, of_fine);
   // With parameters of its own a finer mesh moves as the coarse one does; with the same, it parts.
   const LinearisedMisfit misfit = coarse.problem.Linearise(values, /*with_jacobian=*/true);
-  const auto finer = MakeOtherMesh(coarse.problem, values, misfit, /*fitted_only=*/false);
+  const auto finer = MakeOtherMesh(coarse.problem, values, misfit);
   ASSERT_TRUE(finer.has_value());
   // What was found is kept, and where it was kept the finer mesh is not simulated there again.
   ASSERT_TRUE(errors.other_mesh.has_value());
@@ -78,13 +78,12 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   auto kept = ReadOtherMesh(folder.Path());
   ASSERT_TRUE(kept.has_value());
   EXPECT_EQ(kept->other, errors.other_mesh->other);
-  const auto from_kept =
-      MakeOtherMesh(coarse.problem, values, misfit, /*fitted_only=*/false, &*kept);
+  const auto from_kept = MakeOtherMesh(coarse.problem, values, misfit, &*kept);
   ASSERT_TRUE(from_kept.has_value());
   EXPECT_LT((from_kept->other - finer->other).norm(), 0.2 * (finer->other - finer->own).norm());
   constexpr double kMark = 1e-4;  // m
   kept->other[0] += kMark;
-  const auto marked = MakeOtherMesh(coarse.problem, values, misfit, /*fitted_only=*/false, &*kept);
+  const auto marked = MakeOtherMesh(coarse.problem, values, misfit, &*kept);
   ASSERT_TRUE(marked.has_value());
   EXPECT_GT(marked->other[0] - from_kept->other[0], 0.5 * kMark);
   const PredictionStudy study = coarse.problem.WithEstimatedNoise();
@@ -142,7 +141,7 @@ TEST(MeshLimit, AFitFarFromTheMeasurementsIsComparedWithAMeshThatIsLessFine) {
   misfit.residual *= kFar / RmsOverSigma(misfit.residual, misfit, /*fitted_only=*/true);
   const double fitted = WhitenedRows(misfit.residual, misfit, 0, true).norm();
   ASSERT_LT(fitted, kFarFromTruth * std::sqrt(static_cast<double>(ObservedRows(misfit))));
-  const auto other = MakeOtherMesh(fit.problem, values, misfit, /*fitted_only=*/true);
+  const auto other = MakeOtherMesh(fit.problem, values, misfit);
   ASSERT_TRUE(other.has_value());
   const PredictionStudy study = fit.problem.WithEstimatedNoise();
   const auto expected = WithOtherElements(study, fit.problem.body()->mesh, 4);

@@ -231,7 +231,7 @@ TEST_F(RefitsOfABar, AreFittedAgainWhereTheyOnlySeemedFarBehind) {
   EffectRanking along;
   along.adopted = {1e-6 * ranking_.misfit.jacobian.col(0), {{0, 1, false}}, 1};
   along.noise = kWhite;
-  along.noise.variance = 1e6;  // another noise than that in which refits are compared
+  along.noise.variance = 4;  // another noise than that in which refits are compared
   LookAlong({model, ranking_}, "drag", along, &ranked);
   const EffectRefit& again = ranked.refits[1];
   ASSERT_TRUE(ranked.IsUsable(1)) << ranked.effects[1].refit_message;
