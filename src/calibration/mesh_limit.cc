@@ -246,9 +246,8 @@ std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
   const ChangeSearch search(problem, values, misfit, mesh.own);
   bool is_simulated = false;
   if (known != nullptr) {
-    mesh.change = known->ToRatio(mesh.ratio) * known->change;
     is_simulated = known->ratio == mesh.ratio && IsSame(known->own, mesh.own);
-    if (is_simulated) mesh.change = known->change;
+    mesh.change = is_simulated ? known->change : known->ToRatio(mesh.ratio) * known->change;
   } else if (mesh.ratio > kScoutBelow * kScoutRatio) {
     // Most of the way is found with elements that cost little.
     const auto scout = WithOtherElements(study, own, kScoutRatio);

@@ -45,8 +45,8 @@ struct OtherMesh {
 // `misfit` is that at `values`, with its Jacobian. The motions are compared in all frames of the
 // fitted recordings. `known`: what was found at these values or near them; where the study's mesh
 // moves as it did then, the other one is not simulated again at that change. Null: nothing is
-// known. Returns nothing where another mesh cannot be made
-// (calibration/other_elements.h) or cannot be simulated. Throws Interrupted.
+// known. Returns nothing where another mesh cannot be made (calibration/other_elements.h) or cannot
+// be simulated. Throws Interrupted.
 std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit,

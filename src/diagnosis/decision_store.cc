@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/json_number.h"
 #include "core/npy.h"
 #include "record/schema_version.h"
@@ -137,10 +137,7 @@ void SaveDecisionInput(const DecisionInput& input, const std::filesystem::path& 
 
 DecisionInput LoadDecisionInput(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "decision.json";
-  std::ifstream stream(file);
-  if (!stream) throw InputError(file.string() + ": cannot be opened");
-  try {
-    const json value = json::parse(stream);
+  return ReadJsonFile(file, [&](const json& value) {
     RequireSchemaVersion(value, kSchemaVersion, "lacuna diagnose");
     DecisionInput input;
     input.baseline = SpaceFromJson(value.at("baseline"), ProductsFile(folder, 0));
@@ -172,9 +169,7 @@ DecisionInput LoadDecisionInput(const std::filesystem::path& folder) {
     input.is_anything_detectable = value.at("is_anything_detectable");
     input.seed = value.at("seed");
     return input;
-  } catch (const json::exception& problem) {
-    throw InputError(fmt::format("{}: {}", file.string(), problem.what()));
-  }
+  });
 }
 
 }  // namespace lacuna

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "calibration/calibration_run.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "diagnosis/decision.h"
 #include "diagnosis/decision_store.h"
 #include "plan/planned_experiment.h"
@@ -211,15 +211,12 @@ void SaveFollowUps(const CaseFollowUps& made, const fs::path& own) {
 }
 
 std::optional<CaseFollowUps> LoadFollowUps(const fs::path& own) {
-  std::ifstream stream(own / kFollowUpFile);
-  if (!stream) return std::nullopt;
-  try {
-    const auto json = nlohmann::json::parse(stream);
+  const fs::path file = own / kFollowUpFile;
+  if (!fs::exists(file)) return std::nullopt;
+  return ReadJsonFile(file, [&](const nlohmann::json& json) {
     return CaseFollowUps{json.at("message"), FromJson(json.at("best"), FollowUpFolders(own)[0]),
                          FromJson(json.at("random"), FollowUpFolders(own)[1])};
-  } catch (const nlohmann::json::exception& problem) {
-    throw InputError(fmt::format("{}: {}", (own / kFollowUpFile).string(), problem.what()));
-  }
+  });
 }
 
 FollowUpReport ReportFollowUps(const fs::path& folder) {

@@ -15,8 +15,8 @@
 #include "calibration/calibration_run.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/progress.h"
-#include "core/text_file.h"
 #include "effects/catalogue.h"
 #include "effects/neo_hookean.h"
 #include "effects/stiffness_damping.h"
@@ -105,8 +105,7 @@ nlohmann::json ToJson(const std::vector<JudgedParameter>& parameters) {
 }
 
 std::vector<JudgedParameter> LoadJudged(const std::filesystem::path& file) {
-  try {
-    const auto json = nlohmann::json::parse(ReadWholeFile(file));
+  return ReadJsonFile(file, [&](const nlohmann::json& json) {
     if (json.at("schema_version") != kIntervalsVersion)
       throw InputError(file.string() + ": is of another version of the program; make it again");
     std::vector<JudgedParameter> parameters;
@@ -114,9 +113,7 @@ std::vector<JudgedParameter> LoadJudged(const std::filesystem::path& file) {
       parameters.push_back({item.at("name"), item.at("unit"), item.at("truth"), item.at("value"),
                             item.at("low"), item.at("high"), item.at("deviations")});
     return parameters;
-  } catch (const nlohmann::json::exception& problem) {
-    throw InputError(fmt::format("{}: {}", file.string(), problem.what()));
-  }
+  });
 }
 
 IntervalTally TallyOf(const std::string& name, const std::vector<double>& deviations) {

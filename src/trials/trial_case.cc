@@ -10,7 +10,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/text_file.h"
+#include "core/json_file.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
@@ -268,8 +268,7 @@ void SaveCase(const TrialCase& trial, const std::filesystem::path& folder) {
 
 TrialCase LoadCase(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kTruthFile;
-  try {
-    const auto json = nlohmann::json::parse(ReadWholeFile(file));
+  return ReadJsonFile(file, [&](const nlohmann::json& json) {
     TrialCase trial;
     trial.name = json.at("name");
     trial.group = NamingWhere(file.string(), [&] { return TrialGroupFromName(json.at("group")); });
@@ -304,9 +303,7 @@ TrialCase LoadCase(const std::filesystem::path& folder) {
                                       cell.at("delay_deviation")};
     }
     return trial;
-  } catch (const nlohmann::json::exception& problem) {
-    throw InputError(fmt::format("{}: {}", file.string(), problem.what()));
-  }
+  });
 }
 
 double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j) {

@@ -13,8 +13,8 @@
 #include "calibration/adaptive_time_step.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/json_number.h"
-#include "core/text_file.h"
 #include "diagnosis/decision.h"
 #include "diagnosis/decision_store.h"
 #include "diagnosis/diagnosis.h"
@@ -194,8 +194,7 @@ void SaveTrialOutcome(const TrialOutcome& outcome, const std::filesystem::path& 
 
 TrialOutcome LoadTrialOutcome(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kOutcomeFile;
-  try {
-    const auto json = nlohmann::json::parse(ReadWholeFile(file));
+  return ReadJsonFile(file, [&](const nlohmann::json& json) {
     const int version = json.at("schema_version");
     if (version > kSchemaVersion)
       throw InputError(fmt::format("{}: schema_version {} is of a later version of the program",
@@ -228,9 +227,7 @@ TrialOutcome LoadTrialOutcome(const std::filesystem::path& folder) {
     for (const int covered : json.at("covered")) outcome.covered.push_back(covered != 0);
     outcome.seconds = json.at("seconds");
     return outcome;
-  } catch (const nlohmann::json::exception& problem) {
-    throw InputError(fmt::format("{}: {}", file.string(), problem.what()));
-  }
+  });
 }
 
 bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output) {

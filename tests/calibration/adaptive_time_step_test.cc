@@ -7,10 +7,10 @@
 #include <cmath>
 #include <memory>
 
-#include "fem/cloneable_effect.h"
 #include "support/held_bar.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
+#include "support/test_effect.h"
 
 namespace lacuna {
 namespace {
@@ -67,20 +67,11 @@ TEST_F(AdaptiveTimeStepOfABar, DoesNotResolveWhatTheModelLacksAnyway) {
 }
 
 // A force whose direction changes with each halving of the step: no step is short enough.
-class StepDependentForce final : public CloneableEffect<StepDependentForce> {
+class StepDependentForce final : public TestEffect<StepDependentForce> {
  public:
   static constexpr double kFirstStep = 0.005;  // s
 
-  const EffectCard& Card() const override {
-    static const EffectCard card = [] {
-      EffectCard force;
-      force.type = "step_dependent_force";
-      return force;
-    }();
-    return card;
-  }
-  Eigen::VectorXd Parameters() const override { return {}; }
-  void SetParameters(const Eigen::VectorXd&) {}
+  static constexpr const char* kType = "step_dependent_force";
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
     constexpr double kAcceleration = 20;  // m/s²
     if (at.time_step == 0) return;
@@ -88,8 +79,6 @@ class StepDependentForce final : public CloneableEffect<StepDependentForce> {
     force->reshaped(3, at.body.NodeCount()).row(2) +=
         (halvings % 2 == 0 ? kAcceleration : -kAcceleration) * at.body.node_mass.transpose();
   }
-  void AddTangents(const Kinematics&, const TangentWeights&, bool, BlockMatrix*) const override {}
-  void AddParameterDerivative(const Kinematics&, int, Eigen::VectorXd*) const override {}
 };
 
 TEST_F(AdaptiveTimeStepOfABar, SaysWhereNoStepIsShortEnough) {

@@ -9,9 +9,9 @@
 #include <memory>
 
 #include "calibration/known_errors.h"
-#include "fem/cloneable_effect.h"
 #include "support/held_bar.h"
 #include "support/temporary_folder.h"
+#include "support/test_effect.h"
 
 namespace lacuna {
 namespace {
@@ -95,25 +95,14 @@ TEST_F(SizeErrorsOfABar, AreNoneWithoutAnUncertainty) {
 }
 
 // Stands for whatever cannot be simulated with a longer object.
-class FailureOfLongBars final : public CloneableEffect<FailureOfLongBars> {
+class FailureOfLongBars final : public TestEffect<FailureOfLongBars> {
  public:
-  const EffectCard& Card() const override {
-    static const EffectCard card = [] {
-      EffectCard failure;
-      failure.type = "failure_of_long_bars";
-      return failure;
-    }();
-    return card;
-  }
-  Eigen::VectorXd Parameters() const override { return {}; }
-  void SetParameters(const Eigen::VectorXd&) {}
+  static constexpr const char* kType = "failure_of_long_bars";
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
     constexpr double kLength = 0.08, kRounding = 1e-9;  // m
     if (at.body.mesh.nodes.row(0).maxCoeff() > kLength + kRounding)
       force->setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  void AddTangents(const Kinematics&, const TangentWeights&, bool, BlockMatrix*) const override {}
-  void AddParameterDerivative(const Kinematics&, int, Eigen::VectorXd*) const override {}
 };
 
 TEST_F(SizeErrorsOfABar, AreSaidToBeMissingWhereTheyCannotBeComputed) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calibration/calibration_fits.h"
@@ -72,6 +73,31 @@ class RefitsOfABar : public ::testing::Test {
     EffectRefit refit = Refit({model, ranking_.adopted}, &drag);
     EXPECT_TRUE(refit.message.empty()) << refit.message;
     return refit;
+  }
+
+  EffectRefit RefitSupport(const BaselineModel& model) {
+    const ScoredEffect support = Support("");
+    EffectRefit refit = Refit({model, ranking_.adopted}, &support);
+    EXPECT_TRUE(refit.message.empty()) << refit.message;
+    return refit;
+  }
+
+  // A drag that is the best effect, and a support with a refit that is said to have converged, both
+  // looked at along the motion with drag. `along`: the noise there.
+  RefittedRanking LookedAlongDrag(const BaselineModel& model, EffectRefit support,
+                                  const NoiseLevel& along) {
+    RefittedRanking ranked = RankedWith(model, {Drag(""), Support("")});
+    ranked.baseline.errors.has_held_out = false;
+    ranked.Take(0, {Drag(""), RefitDrag(model)});
+    support.unconverged.clear();
+    ranked.Take(1, {Support(""), std::move(support)});
+    ranked.baseline_evidence = EvidenceOf(ranked.refits[0], kWhite).all - 1000;
+    ranked.best = {.effect = 0, .evidence = 1000};
+    EffectRanking ranking;
+    ranking.adopted = {1e-6 * ranking_.misfit.jacobian.col(0), {{0, 1, false}}, 1};
+    ranking.noise = along;
+    LookAlong({model, ranking_}, "drag", ranking, &ranked);
+    return ranked;
   }
 
   const TemporaryFolder folder_;
@@ -181,23 +207,12 @@ TEST_F(RefitsOfABar, AreComparedWithTheBestOneBesideTheSameColumns) {
 // A refit that is far behind, and that no change of its parameters brings near, is not predicted.
 TEST_F(RefitsOfABar, StayWhereTheyAreIfTheyAreFarBehind) {
   const BaselineModel model = Model();
-  RefittedRanking ranked = RankedWith(model, {Drag(""), Support("")});
-  ranked.baseline.errors.has_held_out = false;
-  ranked.Take(0, {Drag(""), RefitDrag(model)});
-  const ScoredEffect support = Support("");
-  EffectRefit behind = Refit({model, ranking_.adopted}, &support);
-  ASSERT_TRUE(behind.message.empty()) << behind.message;
+  EffectRefit behind = RefitSupport(model);
+  ASSERT_TRUE(behind.message.empty());
   behind.at_fit.misfit.residual *= 10;
   behind.at_fit.misfit.jacobian.setZero();
   behind.hypothesis = behind.at_fit;
-  behind.unconverged.clear();
-  ranked.Take(1, {support, behind});
-  ranked.baseline_evidence = EvidenceOf(ranked.refits[0], kWhite).all - 1000;
-  ranked.best = {.effect = 0, .evidence = 1000};
-  EffectRanking along;
-  along.adopted = {1e-6 * ranking_.misfit.jacobian.col(0), {{0, 1, false}}, 1};
-  along.noise = kWhite;
-  LookAlong({model, ranking_}, "drag", along, &ranked);
+  const RefittedRanking ranked = LookedAlongDrag(model, behind, kWhite);
   const EffectRefit& stays = ranked.refits[1];
   EXPECT_THAT(stays.unconverged, testing::HasSubstr("too far behind"));
   EXPECT_EQ(stays.values_at_fit, behind.values_at_fit);
@@ -209,12 +224,8 @@ TEST_F(RefitsOfABar, StayWhereTheyAreIfTheyAreFarBehind) {
 // first order promises to bring it near.
 TEST_F(RefitsOfABar, AreFittedAgainWhereTheyOnlySeemedFarBehind) {
   const BaselineModel model = Model();
-  RefittedRanking ranked = RankedWith(model, {Drag(""), Support("")});
-  ranked.baseline.errors.has_held_out = false;
-  ranked.Take(0, {Drag(""), RefitDrag(model)});
-  const ScoredEffect support = Support("");
-  EffectRefit behind = Refit({model, ranking_.adopted}, &support);
-  ASSERT_TRUE(behind.message.empty()) << behind.message;
+  EffectRefit behind = RefitSupport(model);
+  ASSERT_TRUE(behind.message.empty());
   // As a column of its Jacobian says, a change of the last parameter by so much.
   const Eigen::Index last = behind.at_fit.parameters - 1;
   const auto push = [&](FittedHypothesis* hypothesis) {
@@ -224,15 +235,8 @@ TEST_F(RefitsOfABar, AreFittedAgainWhereTheyOnlySeemedFarBehind) {
   };
   push(&behind.at_fit);
   push(&behind.hypothesis);
-  behind.unconverged.clear();
-  ranked.Take(1, {support, behind});
-  ranked.baseline_evidence = EvidenceOf(ranked.refits[0], kWhite).all - 1000;
-  ranked.best = {.effect = 0, .evidence = 1000};
-  EffectRanking along;
-  along.adopted = {1e-6 * ranking_.misfit.jacobian.col(0), {{0, 1, false}}, 1};
-  along.noise = kWhite;
-  along.noise.variance = 4;  // another noise than that in which refits are compared
-  LookAlong({model, ranking_}, "drag", along, &ranked);
+  // The noise is another one than that in which refits are compared.
+  const RefittedRanking ranked = LookedAlongDrag(model, behind, {0, 4});
   const EffectRefit& again = ranked.refits[1];
   ASSERT_TRUE(ranked.IsUsable(1)) << ranked.effects[1].refit_message;
   EXPECT_EQ(again.unconverged, "");

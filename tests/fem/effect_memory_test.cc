@@ -4,24 +4,16 @@
 
 #include <memory>
 
-#include "fem/cloneable_effect.h"
 #include "support/box_mesh.h"
+#include "support/test_effect.h"
 
 namespace lacuna {
 namespace {
 
 // Its internal variable says whether the last step had inertia.
-class InertiaRecorder final : public CloneableEffect<InertiaRecorder> {
+class InertiaRecorder final : public TestEffect<InertiaRecorder> {
  public:
-  const EffectCard& Card() const override {
-    static const EffectCard card{};
-    return card;
-  }
-  Eigen::VectorXd Parameters() const override { return {}; }
-  void SetParameters(const Eigen::VectorXd&) {}
-  void AddForce(const Kinematics&, Eigen::VectorXd*) const override {}
-  void AddTangents(const Kinematics&, const TangentWeights&, bool, BlockMatrix*) const override {}
-  void AddParameterDerivative(const Kinematics&, int, Eigen::VectorXd*) const override {}
+  static constexpr const char* kType = "inertia_recorder";
   Eigen::Index StateSize(const Body&) const override { return 1; }
   void InitialState(const Body&, Eigen::VectorXd* state) const override { state->setZero(); }
   void AdvanceState(const Kinematics& at, const Eigen::VectorXd&,

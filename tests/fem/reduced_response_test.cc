@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "effects/catalogue.h"
-#include "fem/cloneable_effect.h"
 #include "fem/prediction.h"
 #include "fem/prescribed_force.h"
 #include "support/box_mesh.h"
+#include "support/test_effect.h"
 
 namespace lacuna {
 namespace {
@@ -128,15 +128,9 @@ TEST(ReducedResponse, FollowsAQuasiStaticMotion) {
 }
 
 // A support of each node that acts in steps with inertia only.
-class MovingSupport final : public CloneableEffect<MovingSupport> {
+class MovingSupport final : public TestEffect<MovingSupport> {
  public:
-  const EffectCard& Card() const override {
-    static const EffectCard card{};
-    return card;
-  }
-  Eigen::VectorXd Parameters() const override { return {}; }
-  void SetParameters(const Eigen::VectorXd&) {}
-  void AddForce(const Kinematics&, Eigen::VectorXd*) const override {}
+  static constexpr const char* kType = "moving_support";
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool,
                    BlockMatrix* tangent) const override {
     constexpr double kStiffness = 100;  // N/m; that of the bar at its tip is 4 N/m
@@ -144,7 +138,6 @@ class MovingSupport final : public CloneableEffect<MovingSupport> {
     for (const int diagonal : tangent->pattern().diagonal)
       tangent->Block(diagonal).diagonal().array() -= weights.position * kStiffness;
   }
-  void AddParameterDerivative(const Kinematics&, int, Eigen::VectorXd*) const override {}
 };
 
 TEST(ReducedResponse, EvaluatesEffectsWithTheInertiaOfTheMotion) {

@@ -15,9 +15,9 @@
 namespace lacuna {
 namespace {
 
-// The message that reading the demo's experiment, written into a folder, gives after one change.
-std::string MessageAfter(const TemporaryFolder& folder, const std::string& from,
-                         const std::string& to) {
+// The message that reading the demo's experiment gives after one change.
+std::string MessageAfter(const std::string& from, const std::string& to) {
+  const TemporaryFolder folder;
   const std::filesystem::path experiments =
       std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments";
   std::string text = FileContent(experiments / "bend.yaml");
@@ -38,9 +38,6 @@ std::string MessageAfter(const TemporaryFolder& folder, const std::string& from,
     return problem.what();
   }
   return "nothing was refused";
-}
-std::string MessageAfter(const std::string& from, const std::string& to) {
-  return MessageAfter(TemporaryFolder(), from, to);
 }
 
 using testing::ContainsRegex;
@@ -86,24 +83,24 @@ TEST(StudyErrors, NameTheLineAndTheField) {
 TEST(StudyErrors, KnownAnswersAreCheckedBeforeTheRun) {
   const TemporaryFolder folder;
   WriteNpy(folder / "forces.npy", Eigen::MatrixXd::Zero(16, 2));
-  EXPECT_THAT(MessageAfter(folder, "validation: {",
+  EXPECT_THAT(MessageAfter("validation: {",
                            "validation: {true_forces: " + (folder / "forces.npy").string() + ", "),
               ContainsRegex("e.yaml:[0-9]+:[0-9]+: validation.true_forces: .*forces.npy: is an "
                             "array of 16 × 2; expected frames × 3"));
   WriteNpy(folder / "forces.npy", Eigen::MatrixXd::Zero(16, 3));
-  EXPECT_EQ(MessageAfter(folder, "validation: {",
+  EXPECT_EQ(MessageAfter("validation: {",
                          "validation: {true_forces: " + (folder / "forces.npy").string() + ", "),
             "nothing was refused");
   // The folder lacks the surfaces of the frames.
   std::filesystem::create_directories(folder / "truth");
   const std::filesystem::path truth =
       std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend/truth";
-  EXPECT_THAT(MessageAfter(folder, truth.string(), (folder / "truth").string()),
+  EXPECT_THAT(MessageAfter(truth.string(), (folder / "truth").string()),
               ContainsRegex("validation.true_surfaces: .*triangles.npy"));
   // Every surface is read, the last one, too.
   std::filesystem::copy(truth, folder / "truth");
   WriteNpy(folder / "truth/vertices_015.npy", Eigen::MatrixXd::Zero(2, 5));
-  EXPECT_THAT(MessageAfter(folder, truth.string(), (folder / "truth").string()),
+  EXPECT_THAT(MessageAfter(truth.string(), (folder / "truth").string()),
               ContainsRegex("validation.true_surfaces: .*vertices_015.npy: is an array of 2 × 5"));
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -15,11 +16,13 @@ namespace lacuna {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
+    static std::atomic<int> count = 0;  // a test may have several
     const auto* all = ::testing::UnitTest::GetInstance();
     const auto* test = all->current_test_info();  // none while a suite is set up
     path_ = std::filesystem::path(::testing::TempDir()) /
             ("lacuna_" + std::string(all->current_test_suite()->name()) + "_" +
-             (test ? test->name() : "suite") + "_" + std::to_string(getpid()));
+             (test ? test->name() : "suite") + "_" + std::to_string(getpid()) + "_" +
+             std::to_string(count++));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
