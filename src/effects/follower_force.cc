@@ -178,12 +178,13 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
     constexpr int kPoints = QuadraturePoints<kNodes>();
     ForEachElement(*at.body.schedule, [&](int e) {
       if (!spread.felt[e]) return;
-      const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(at.body, e, at.position);
+      Eigen::Matrix3d F[kPoints];
+      FieldGradients<kNodes>(at.body, e, at.position, F);
       for (int p = 0; p < kPoints; ++p) {
         const int q = e * kPoints + p;
         if (spread.share[q] == 0) continue;
         const Eigen::Vector<double, kNodes> shape = spread.shape.col(p);
-        visit(e, q, shape, FieldGradient<kNodes>(x, ShapeGradient<kNodes>(at.body, q)));
+        visit(e, q, shape, F[p]);
       }
     });
   }
@@ -203,7 +204,8 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
         at, spread,
         [&](int e, int q, const Eigen::Vector<double, kNodes>& shape, const Eigen::Matrix3d& F) {
           const Eigen::Vector3d turned = share[q] * (PolarRotation(F) * at_rest);
-          ScatterNodes<kNodes>(at.body, e, turned * shape.transpose(), force);
+          for (int a = 0; a < kNodes; ++a)
+            force->segment<3>(3 * at.body.mesh.tets(a, e)) += shape[a] * turned;
         });
   }
 

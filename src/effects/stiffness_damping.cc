@@ -183,12 +183,12 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
                               Eigen::VectorXd* force) {
     const Body& body = at.body;
     ForEachElement(*body.schedule, [&](int element) {
-      Eigen::Matrix<double, 3, kNodes> nodal = Eigen::Matrix<double, 3, kNodes>::Zero();
+      constexpr int kPoints = QuadraturePoints<kNodes>();
+      Eigen::Matrix3d weighted[kPoints];
       ForEachViscousStress<kNodes>(at, viscosity, element, [&](int q, const Eigen::Matrix3d& P) {
-        nodal.noalias() -=
-            (body.weight[q] * P).lazyProduct(ShapeGradient<kNodes>(body, q).transpose());
+        weighted[q - element * kPoints] = body.weight[q] * P;
       });
-      ScatterNodes<kNodes>(body, element, nodal, force);
+      AddPointForces<kNodes>(body, element, weighted, force);
     });
   }
 
@@ -196,14 +196,13 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
   template <int kNodes, typename Visit>
   static void ForEachViscousStress(const Kinematics& at, const LameConstants& viscosity,
                                    int element, const Visit& visit) {
-    const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(at.body, element, at.position);
-    const Eigen::Matrix<double, 3, kNodes> v = GatherNodes<kNodes>(at.body, element, at.velocity);
-    for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
-      const int q = element * QuadraturePoints<kNodes>() + p;
-      const Eigen::Matrix<double, kNodes, 3> g = ShapeGradient<kNodes>(at.body, q);
-      const Eigen::Matrix3d F = FieldGradient<kNodes>(x, g);
-      const Eigen::Matrix3d P = F * ViscousStress(viscosity, F, FieldGradient<kNodes>(v, g));
-      visit(q, P);
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    Eigen::Matrix3d F[kPoints], rate[kPoints];
+    FieldGradients<kNodes>(at.body, element, at.position, F);
+    FieldGradients<kNodes>(at.body, element, at.velocity, rate);
+    for (int p = 0; p < kPoints; ++p) {
+      const Eigen::Matrix3d P = F[p] * ViscousStress(viscosity, F[p], rate[p]);
+      visit(element * kPoints + p, P);
     }
   }
 
@@ -222,15 +221,16 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
   static void AddMatrix(const Kinematics& at, const Moduli& C, BlockMatrix* tangent) {
     const Body& body = at.body;
     ForEachElement(*body.schedule, [&](int element) {
-      const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, element, at.position);
-      const Eigen::Matrix<double, 3, kNodes> v = GatherNodes<kNodes>(body, element, at.velocity);
+      constexpr int kPoints = QuadraturePoints<kNodes>();
+      Eigen::Matrix3d F[kPoints], rate[kPoints];
+      FieldGradients<kNodes>(body, element, at.position, F);
+      FieldGradients<kNodes>(body, element, at.velocity, rate);
       ElementStiffness<kNodes> stiffness;
       stiffness.SetZero();
-      for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
-        const int q = element * QuadraturePoints<kNodes>() + p;
-        const Eigen::Matrix<double, kNodes, 3> g = ShapeGradient<kNodes>(body, q);
-        const StressTangent moduli = C(FieldGradient<kNodes>(x, g), FieldGradient<kNodes>(v, g));
-        AddStiffness<kNodes>(moduli, g, -body.weight[q], &stiffness);
+      for (int p = 0; p < kPoints; ++p) {
+        const int q = element * kPoints + p;
+        AddStiffness<kNodes>(C(F[p], rate[p]), ShapeGradient<kNodes>(body, q), -body.weight[q],
+                             &stiffness);
       }
       ScatterStiffness<kNodes, kMirror>(body, element, stiffness, tangent);
     });

@@ -3,6 +3,7 @@
 // `kNodes` is the number of nodes of an element, 4 for linear and 10 for quadratic tetrahedra. With
 // the nodal values u_a (columns of a 3 × kNodes matrix) and the shape gradients g_a = ∂N_a/∂X at a
 // quadrature point, the gradient of the field is Σ_a u_a ⊗ g_a. Nodal fields are 3n, node-major.
+// Results at the points of an element are arrays of QuadraturePoints<kNodes>() matrices.
 #ifndef LACUNA_FEM_ELEMENT_KINEMATICS_H_
 #define LACUNA_FEM_ELEMENT_KINEMATICS_H_
 
@@ -30,40 +31,51 @@ constexpr int QuadraturePoints() {
   return kNodes == 4 ? 1 : 4;
 }
 
-// Gathers the values of a nodal field (3n) at the nodes of an element.
-template <int kNodes>
-Eigen::Matrix<double, 3, kNodes> GatherNodes(const Body& body, int element,
-                                             const Eigen::VectorXd& field) {
-  Eigen::Matrix<double, 3, kNodes> nodal;
-  const int* node = &body.mesh.tets(0, element);
-  for (int a = 0; a < kNodes; ++a) nodal.col(a) = field.segment<3>(3 * node[a]);
-  return nodal;
-}
-
-// Adds values at the nodes of an element to a nodal field (3n). Only inside ForEachElement or
-// ForEachBatch, which exclude concurrent access to the same node.
-template <int kNodes>
-void ScatterNodes(const Body& body, int element, const Eigen::Matrix<double, 3, kNodes>& nodal,
-                  Eigen::VectorXd* field) {
-  const int* node = &body.mesh.tets(0, element);
-  for (int a = 0; a < kNodes; ++a) field->segment<3>(3 * node[a]) += nodal.col(a);
-}
-
 // The shape gradients ∂N/∂X at quadrature point q, kNodes × 3, 1/m. Refers to the body.
 template <int kNodes>
 Eigen::Map<const Eigen::Matrix<double, kNodes, 3>> ShapeGradient(const Body& body, int q) {
   return Eigen::Map<const Eigen::Matrix<double, kNodes, 3>>(&body.shape_gradient(0, 3 * q));
 }
 
-// Σ_a u_a ⊗ g_a: the deformation gradient F if the nodal values are positions, and its rate if they
-// are velocities. Since Σ g_a = 0, the value of the first node can be subtracted, which avoids
-// cancellation far from the origin.
-template <int kNodes, typename Gradient>
-EIGEN_STRONG_INLINE Eigen::Matrix3d FieldGradient(const Eigen::Matrix<double, 3, kNodes>& nodal,
-                                                  const Gradient& gradient) {
-  const Eigen::Matrix<double, 3, kNodes - 1> edges =
-      nodal.template rightCols<kNodes - 1>().colwise() - nodal.col(0);
-  return edges.lazyProduct(gradient.template bottomRows<kNodes - 1>());
+// For elements of 4 or 10 nodes: the gradients of a nodal field at the `points` whose shape
+// gradients stand one after another, 9 numbers (column-major) for each point; and the opposite,
+// which takes Σ_q P_q g_a(q) off the values of a nodal field at each node a, for matrices P_q that
+// stand alike.
+void GradientsOf4(const double* field, const int* node, const double* shape_gradient,
+                  double* gradient);
+void GradientsOf10(const double* field, const int* node, const double* shape_gradient,
+                   double* gradient);
+void SubtractForcesOf4(const double* P, const int* node, const double* shape_gradient,
+                       double* field);
+void SubtractForcesOf10(const double* P, const int* node, const double* shape_gradient,
+                        double* field);
+
+// Σ_a u_a ⊗ g_a at the points of an element: the deformation gradients F if the field holds
+// positions, and their rates if it holds velocities. Since Σ g_a = 0, the value of the first node
+// is subtracted, which avoids cancellation far from the origin.
+template <int kNodes>
+void FieldGradients(const Body& body, int element, const Eigen::VectorXd& field,
+                    Eigen::Matrix3d* gradients) {
+  const int* node = &body.mesh.tets(0, element);
+  const double* shape = &body.shape_gradient(0, 3 * element * QuadraturePoints<kNodes>());
+  if constexpr (kNodes == 4)
+    GradientsOf4(field.data(), node, shape, gradients->data());
+  else
+    GradientsOf10(field.data(), node, shape, gradients->data());
+}
+
+// Adds the nodal forces −Σ_q P_q g_a(q) of an element to `force` (3n, N), for first Piola–Kirchhoff
+// stresses at its points times their weights (Pa m³). Only inside ForEachElement or ForEachBatch,
+// which exclude concurrent access to the same node.
+template <int kNodes>
+void AddPointForces(const Body& body, int element, const Eigen::Matrix3d* weighted_stress,
+                    Eigen::VectorXd* force) {
+  const int* node = &body.mesh.tets(0, element);
+  const double* shape = &body.shape_gradient(0, 3 * element * QuadraturePoints<kNodes>());
+  if constexpr (kNodes == 4)
+    SubtractForcesOf4(weighted_stress->data(), node, shape, force->data());
+  else
+    SubtractForcesOf10(weighted_stress->data(), node, shape, force->data());
 }
 
 // Adds an element matrix K to a tangent, with K_ba = kMirror K_abᵀ: symmetric for kMirror = 1 and

@@ -11,17 +11,17 @@ ElementStrain MeanStrain(const Body& body, int element, const Eigen::VectorXd& p
   return WithNodesPerElement(body, [&](auto nodes) {
     constexpr int kNodes = decltype(nodes)::value;
     constexpr int kPoints = QuadraturePoints<kNodes>();
-    const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, element, position);
-    const Eigen::Matrix<double, 3, kNodes> v = GatherNodes<kNodes>(body, element, velocity);
+    Eigen::Matrix3d F[kPoints], rate[kPoints];
+    FieldGradients<kNodes>(body, element, position, F);
+    FieldGradients<kNodes>(body, element, velocity, rate);
     ElementStrain mean;
     double volume = 0;
-    for (int q = element * kPoints; q < (element + 1) * kPoints; ++q) {
-      const Eigen::Matrix3d F = FieldGradient<kNodes>(x, ShapeGradient<kNodes>(body, q));
-      const Eigen::Matrix3d rate = FieldGradient<kNodes>(v, ShapeGradient<kNodes>(body, q));
-      const Eigen::Matrix3d product = F.transpose() * rate;
-      mean.strain += body.weight[q] * GreenLagrangeStrain(F);
-      mean.rate += body.weight[q] * ToKelvin(0.5 * (product + product.transpose()));
-      volume += body.weight[q];
+    for (int p = 0; p < kPoints; ++p) {
+      const double weight = body.weight[element * kPoints + p];
+      const Eigen::Matrix3d product = F[p].transpose() * rate[p];
+      mean.strain += weight * GreenLagrangeStrain(F[p]);
+      mean.rate += weight * ToKelvin(0.5 * (product + product.transpose()));
+      volume += weight;
     }
     mean.strain /= volume;
     mean.rate /= volume;

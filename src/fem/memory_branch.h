@@ -144,11 +144,10 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
   // Calls visit(q, F) for each quadrature point q of an element, with its deformation gradient F.
   template <int kNodes, typename Visit>
   static void ForEachPoint(const Kinematics& at, int element, const Visit& visit) {
-    const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(at.body, element, at.position);
-    for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
-      const int q = element * QuadraturePoints<kNodes>() + p;
-      visit(q, FieldGradient<kNodes>(x, ShapeGradient<kNodes>(at.body, q)));
-    }
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    Eigen::Matrix3d F[kPoints];
+    FieldGradients<kNodes>(at.body, element, at.position, F);
+    for (int p = 0; p < kPoints; ++p) visit(element * kPoints + p, F[p]);
   }
 
   // Adds the nodal forces −Σ w F S g_a with S = stress(strain, state).
@@ -163,13 +162,13 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
   static void AddNodalStress(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) {
     const Body& body = at.body;
     ForEachElement(*body.schedule, [&](int element) {
-      Eigen::Matrix<double, 3, kNodes> nodal = Eigen::Matrix<double, 3, kNodes>::Zero();
+      constexpr int kPoints = QuadraturePoints<kNodes>();
+      Eigen::Matrix3d weighted[kPoints];
       ForEachPoint<kNodes>(at, element, [&](int q, const Eigen::Matrix3d& F) {
-        const Eigen::Matrix3d P =
+        weighted[q - element * kPoints] =
             body.weight[q] * F * FromKelvin(stress(GreenLagrangeStrain(F), StateOf(at.state, q)));
-        nodal.noalias() -= P.lazyProduct(ShapeGradient<kNodes>(body, q).transpose());
       });
-      ScatterNodes<kNodes>(body, element, nodal, force);
+      AddPointForces<kNodes>(body, element, weighted, force);
     });
   }
 

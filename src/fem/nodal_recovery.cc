@@ -40,11 +40,10 @@ template <int kNodes>
 Eigen::MatrixXd GradientsAtPoints(const Body& body, const Eigen::VectorXd& position) {
   Eigen::MatrixXd gradients(9, body.PointCount());
   for (int e = 0; e < body.ElementCount(); ++e) {
-    const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, e, position);
-    for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
-      const int q = e * QuadraturePoints<kNodes>() + p;
-      gradients.col(q) = FieldGradient<kNodes>(x, ShapeGradient<kNodes>(body, q)).reshaped();
-    }
+    Eigen::Matrix3d F[QuadraturePoints<kNodes>()];
+    FieldGradients<kNodes>(body, e, position, F);
+    for (int p = 0; p < QuadraturePoints<kNodes>(); ++p)
+      gradients.col(e * QuadraturePoints<kNodes>() + p) = F[p].reshaped();
   }
   return gradients;
 }

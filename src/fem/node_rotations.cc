@@ -17,12 +17,11 @@ template <int kNodes>
 void AddDeformationGradients(const Body& body, const Eigen::VectorXd& position,
                              std::vector<Eigen::Matrix3d>* sums) {
   ForEachElement(*body.schedule, [&](int element) {
-    const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, element, position);
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    Eigen::Matrix3d F[kPoints];
+    FieldGradients<kNodes>(body, element, position, F);
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
-      const int q = element * QuadraturePoints<kNodes>() + p;
-      sum += body.weight[q] * FieldGradient<kNodes>(x, ShapeGradient<kNodes>(body, q));
-    }
+    for (int p = 0; p < kPoints; ++p) sum += body.weight[element * kPoints + p] * F[p];
     for (int a = 0; a < kNodes; ++a) (*sums)[body.mesh.tets(a, element)] += sum;
   });
 }

@@ -25,11 +25,8 @@ template <int kNodes>
 struct DeformationGradients {
   DeformationGradients(const Kinematics& at, int begin, int end) {
     for (int element = begin; element < end; ++element) {
-      const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(at.body, element, at.position);
-      for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
-        const int q = element * QuadraturePoints<kNodes>() + p;
-        gradient[points++] = FieldGradient<kNodes>(x, ShapeGradient<kNodes>(at.body, q));
-      }
+      FieldGradients<kNodes>(at.body, element, at.position, gradient + points);
+      points += QuadraturePoints<kNodes>();
     }
   }
 
@@ -48,13 +45,11 @@ void AddNodalForces(const Kinematics& at, const Stress& stress, Eigen::VectorXd*
     ForEachBatch(*at.body.schedule, [&](int begin, int end) {
       const Points<kNodes> points(at, begin, end);
       for (int element = begin; element < end; ++element) {
-        Eigen::Matrix<double, 3, kNodes> nodal = Eigen::Matrix<double, 3, kNodes>::Zero();
-        for (int q = element * kPoints; q < (element + 1) * kPoints; ++q) {
-          const Eigen::Matrix3d P = stress(points, q - begin * kPoints);
-          nodal.noalias() -=
-              (at.body.weight[q] * P).lazyProduct(ShapeGradient<kNodes>(at.body, q).transpose());
-        }
-        ScatterNodes<kNodes>(at.body, element, nodal, force);
+        Eigen::Matrix3d weighted[kPoints];
+        for (int p = 0; p < kPoints; ++p)
+          weighted[p] = at.body.weight[element * kPoints + p] *
+                        stress(points, (element - begin) * kPoints + p);
+        AddPointForces<kNodes>(at.body, element, weighted, force);
       }
     });
   });

@@ -18,10 +18,6 @@ Vector9d Dyad(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
   return dyad;
 }
 
-// Four neighbouring entries. Left to itself, the compiler unrolls these short loops and keeps
-// scalars.
-typedef double Four __attribute__((vector_size(4 * sizeof(double)), may_alias));
-
 // Rows a of one matrix of entries, from node 4 kFirst to the last one, and in each group of four
 // rows the columns from the group's first node on: entry_ab += Σ_j (g_a)_j right_jb.
 template <int kNodes, int kGroups, int kFirst>
@@ -42,9 +38,14 @@ template <int kNodes>
 [[gnu::always_inline]] inline void AddToEntries(const double* tangent, const double* gradient,
                                                 double scale, double* entry) {
   constexpr int kGroups = ElementStiffness<kNodes>::kWidth / 4;
-  Four g[3][kGroups] = {};
-  for (int l = 0; l < 3; ++l)
-    for (int b = 0; b < kNodes; ++b) g[l][b / 4][b % 4] = scale * gradient[kNodes * l + b];
+  Four g[3][kGroups];
+  for (int l = 0; l < 3; ++l) {
+    const double* of_nodes = gradient + kNodes * l;
+    for (int b = 0; b < kNodes / 4; ++b) LoadFour<4>(of_nodes + 4 * b, &g[l][b]);
+    if constexpr (kNodes % 4 != 0)
+      LoadFour<kNodes % 4>(of_nodes + kNodes - kNodes % 4, &g[l][kGroups - 1]);
+    for (Four& group : g[l]) group *= scale;
+  }
   for (int k = 0; k < 3; ++k) {
     for (int i = 0; i < 3; ++i) {
       Four right[3][kGroups];  // [j][b] = Σ_l C_ijkl (g_b)_l

@@ -15,6 +15,7 @@
 #include "fem/prescribed_force.h"
 #include "fem/simulate.h"
 #include "support/box_mesh.h"
+#include "support/dense_matrix.h"
 #include "support/lattice.h"
 
 namespace lacuna {
@@ -198,7 +199,7 @@ TEST(PartialSupportSolver, AgreesWithADenseFactorisation) {
   Eigen::VectorXd expected = Eigen::VectorXd::Zero(b.size());
   const Eigen::MatrixXd free_part = dense(free, free);
   const Eigen::VectorXd free_right = b(free), solved = free_part.ldlt().solve(free_right);
-  expected(free) = solved;
+  for (size_t k = 0; k < free.size(); ++k) expected[free[k]] = solved[static_cast<Eigen::Index>(k)];
   for (const auto method :
        {LinearSolverOptions::Method::kDirect, LinearSolverOptions::Method::kKeptFactor}) {
     LinearSolver solver(lattice.pattern, HeldComponents(axes), {method, 1e-12});

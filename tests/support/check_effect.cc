@@ -12,6 +12,7 @@
 
 #include "core/parallel.h"
 #include "support/box_mesh.h"
+#include "support/dense_matrix.h"
 
 namespace lacuna {
 namespace {
@@ -115,17 +116,6 @@ class Checker {
     BlockMatrix tangent(moving_.body.pattern);
     effect_.AddTangents(At(moving_.motion), weights, convexify, &tangent);
     return Dense(tangent);
-  }
-
-  Eigen::MatrixXd Dense(const BlockMatrix& matrix) const {
-    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size_, size_);
-    const BlockPattern& pattern = matrix.pattern();
-    for (int i = 0; i < pattern.nodes; ++i) {
-      for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k) {
-        dense.block<3, 3>(3 * i, 3 * pattern.column[k]) = matrix.Block(k);
-      }
-    }
-    return dense;
   }
 
   // The smallest relative error of `analytic` against central differences of `value` over step

@@ -83,18 +83,6 @@ inline Eigen::VectorXd RandomVector(Eigen::Index size) {
   return v;
 }
 
-// The matrix with all entries.
-inline Eigen::MatrixXd Dense(const BlockMatrix& matrix) {
-  const BlockPattern& pattern = matrix.pattern();
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * pattern.nodes, 3 * pattern.nodes);
-  for (int i = 0; i < pattern.nodes; ++i) {
-    for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k) {
-      dense.block<3, 3>(3 * i, 3 * pattern.column[k]) = matrix.Block(k);
-    }
-  }
-  return dense;
-}
-
 }  // namespace lacuna
 
 #endif  // LACUNA_TESTS_SUPPORT_LATTICE_H_
