@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "calibration/calibration_fits.h"
+#include "core/quantity.h"
 
 namespace lacuna {
 namespace {
@@ -54,7 +55,8 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
     check.error = RootMeanSquare(change);
     check.allowed = std::max(kOfNoise, kOfMisfit * RootMeanSquare(now));
   }
-  progress->End(fmt::format("{:.3g} ms, error about {:.2g} σ", 2e3 * half.time_step, check.error));
+  progress->End(
+      fmt::format("{}, error about {:.2g} σ", DurationText(2 * half.time_step), check.error));
   return check;
 }
 
@@ -68,17 +70,17 @@ std::string NoteOn(const StepCheck& check, double time_step, bool is_out_of_step
                 check.error, check.allowed)
           : "its error is not known, because the motion could not be predicted with half of it";
   return fmt::format(
-      "the time step of {:.3g} ms may be too long: {}, and {}; motion.time_step gives a shorter "
+      "the time step of {} may be too long: {}, and {}; motion.time_step gives a shorter "
       "one",
-      1e3 * time_step, found,
+      DurationText(time_step), found,
       is_out_of_steps ? fmt::format("{} step lengths were tried", kMostSteps)
                       : "the predictions that a fit may take are used up");
 }
 
 }  // namespace
 
-AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
-                                   Progress* progress) {
+AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress,
+                                   FitStore* kept) {
   AdaptedFit fit;
   FitBudget budget(study->time_step);
   Calibration beginning;
@@ -87,7 +89,7 @@ AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
     PredictionStudy further;
     {
       const CalibrationProblem problem(*study, mesh);
-      beginning = FitShortHorizon(problem, problem.Start(), progress, &budget);
+      beginning = FitShortHorizon(problem, problem.Start(), progress, &budget, kept);
       further = problem.WithEstimatedNoise();
       if (beginning.usable)
         further.time_step *= CheckStep(problem, beginning.parameters, progress).Share();
@@ -104,8 +106,9 @@ AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
       const bool goes_on = !fit.calibration.estimates.empty();
       const bool has_begun = tried == 1 && beginning.parameters.size() > 0;
       fit.calibration =
-          goes_on ? RefineFit(problem, fit.calibration.parameters, progress, &budget)
-                  : FitFromStart(problem, progress, has_begun ? &beginning : nullptr, &budget);
+          goes_on
+              ? RefineFit(problem, fit.calibration.parameters, progress, &budget, kept)
+              : FitFromStart(problem, progress, has_begun ? &beginning : nullptr, &budget, kept);
       if (!goes_on) start_rms = fit.calibration.start_rms;
       predictions += fit.calibration.predictions;
       fit.calibration.predictions = predictions;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "calibration/far_start.h"
+#include "core/hash.h"
 
 namespace lacuna {
 namespace {
@@ -73,11 +74,12 @@ double Left(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
 // Stages of one fit, whose predictions are counted together.
 class Fitter {
  public:
-  Fitter(const CalibrationProblem& problem, Progress* progress, FitBudget* budget)
+  Fitter(const CalibrationProblem& problem, Progress* progress, FitBudget* budget, FitStore* kept)
       : problem_(problem),
         progress_(*progress),
         own_budget_(problem.study().time_step),
-        budget_(budget != nullptr ? *budget : own_budget_) {}
+        budget_(budget != nullptr ? *budget : own_budget_),
+        kept_(kept) {}
 
   bool IsOutOfBudget() const { return budget_.IsUsedUp(TimeStep()); }
 
@@ -154,10 +156,20 @@ class Fitter {
       parameters[k].prior_mean = parameters[k].start;
       parameters[k].prior_deviation = kHeldDeviation * parameters[k].typical;
     }
-    memory_.correspondences.clear();
     CalibrationOptions within = options;
     within.max_predictions = budget_.PredictionsLeft(TimeStep());
-    const Calibration calibration = Calibrate(
+    const Calibration calibration = kept_ != nullptr ? KeptFit(horizon, parameters, within)
+                                                     : NewFit(horizon, parameters, within);
+    budget_.Spend(calibration.predictions, TimeStep());
+    return calibration;
+  }
+
+  // Depends on its arguments, the problem and the reach alone, so that a kept fit can replace it.
+  Calibration NewFit(double horizon, const std::vector<CalibratedParameter>& parameters,
+                     const CalibrationOptions& options) {
+    memory_.correspondences.clear();
+    memory_.equilibria.clear();
+    return Calibrate(
         parameters,
         [&](const Eigen::VectorXd& at, bool with_jacobian) {
           Prediction prediction = problem_.Predict(at, with_jacobian, horizon, &memory_);
@@ -165,8 +177,23 @@ class Fitter {
                            prediction.usable ? RootMeanSquare(prediction) : std::nan(""));
           return prediction;
         },
-        within);
-    budget_.Spend(calibration.predictions, TimeStep());
+        options);
+  }
+
+  Calibration KeptFit(double horizon, const std::vector<CalibratedParameter>& parameters,
+                      const CalibrationOptions& options) {
+    std::string all = fmt::format("{:a} {:a} {:a} {:a} {:a} {} {}", horizon, TimeStep(),
+                                  problem_.noise(), problem_.scan_noise(), memory_.reach_factor,
+                                  options.max_iterations, options.max_predictions);
+    for (const CalibratedParameter& parameter : parameters)
+      all += fmt::format(" {:a} {:a}", parameter.start, parameter.prior_deviation);
+    const std::string key = HashBytes(all);
+    if (const Calibration* found = kept_->Find(key)) {
+      evaluations_ += found->predictions;
+      return *found;
+    }
+    const Calibration calibration = NewFit(horizon, parameters, options);
+    kept_->Keep(key, calibration);
     return calibration;
   }
 
@@ -215,6 +242,7 @@ class Fitter {
   Progress& progress_;
   FitBudget own_budget_;
   FitBudget& budget_;
+  FitStore* kept_;
   CalibrationProblem::FitMemory memory_;
   int evaluations_ = 0;
   std::string searched_;  // FarStart::summary
@@ -235,24 +263,24 @@ double ShortHorizon(const CalibrationProblem& problem) {
 }
 
 Calibration FitShortHorizon(const CalibrationProblem& problem, const Eigen::VectorXd& start,
-                            Progress* progress, FitBudget* budget) {
-  return Fitter(problem, progress, budget).FirstPart(start);
+                            Progress* progress, FitBudget* budget, FitStore* kept) {
+  return Fitter(problem, progress, budget, kept).FirstPart(start);
 }
 
 Calibration FitInStages(const CalibrationProblem& problem, const Eigen::VectorXd& start,
                         Progress* progress) {
-  Fitter fitter(problem, progress, nullptr);
+  Fitter fitter(problem, progress, nullptr, nullptr);
   return fitter.Whole(start, fitter.Beginning("fit, first part", start));
 }
 
 Calibration RefineFit(const CalibrationProblem& problem, const Eigen::VectorXd& near,
-                      Progress* progress, FitBudget* budget) {
-  return Fitter(problem, progress, budget).Stage("fit", kUnlimited, near);
+                      Progress* progress, FitBudget* budget, FitStore* kept) {
+  return Fitter(problem, progress, budget, kept).Stage("fit", kUnlimited, near);
 }
 
 Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
-                         const Calibration* beginning, FitBudget* budget) {
-  Fitter fitter(problem, progress, budget);
+                         const Calibration* beginning, FitBudget* budget, FitStore* kept) {
+  Fitter fitter(problem, progress, budget, kept);
   if (beginning != nullptr) fitter.CountAlso(beginning->predictions);
   const Eigen::VectorXd start = problem.Start();
   Calibration calibration =
@@ -264,14 +292,12 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
       (calibration.usable || problem.HasScans()))
     return calibration;
 
-  const std::vector<ModelParameter>& fitted = problem.study().fitted;
   double least = calibration.usable ? calibration.rms : kUnlimited;
   Calibration nearest;
   for (const double factor : kOtherStarts) {
     Eigen::VectorXd other = start;
-    for (size_t k = 0; k < fitted.size(); ++k)
-      if (problem.parameters()[k].log_scale && fitted[k].unit == "Pa")
-        other[static_cast<Eigen::Index>(k)] *= factor;
+    for (size_t k = 0; k < problem.parameters().size(); ++k)
+      if (problem.IsModulus(k)) other[static_cast<Eigen::Index>(k)] *= factor;
     if (other == start || fitter.IsOutOfBudget()) break;
     Calibration first = fitter.Beginning(
         fmt::format("fit, moduli from {:g} times their start values", factor), other);

@@ -3,13 +3,15 @@
 // All fits use the fitted frames of the fitted recordings. The correspondences of scanned points
 // are fixed during a fit and updated after it, until the parameters settle. If they do not settle,
 // the result is not usable. A fit that has used up its budget is not usable either; its parameters
-// are the best ones that it found. All functions throw Interrupted.
+// are the best ones that it met. Where a fit from several starts has used it up, the result is the
+// fit from the study's own start. All functions throw Interrupted.
 #ifndef LACUNA_CALIBRATION_CALIBRATION_FITS_H_
 #define LACUNA_CALIBRATION_CALIBRATION_FITS_H_
 
 #include <Eigen/Core>
 
 #include "calibration/calibration_problem.h"
+#include "calibration/fit_store.h"
 #include "core/progress.h"
 
 namespace lacuna {
@@ -40,13 +42,16 @@ class FitBudget {
 // in which the object moves, taken from the recording in which that ends last.
 double ShortHorizon(const CalibrationProblem& problem);
 
-// `budget`, here and below: shared by several fits; null: each has one of its own.
+// `budget`, here and below: shared by several fits; null: each has one of its own. `kept`: finished
+// parts are read from there and added to it, so that a fit that was stopped continues with the part
+// that it was in; null: they are not kept.
 
 // Fits over the short horizon, where a wrong model has the least time to diverge. Where `start` is
 // that of a diagnosis (PredictionStudy::explained_misfit) and comes within kLocalMinimumSuspected
 // over all fitted frames of markers, it is the result.
 Calibration FitShortHorizon(const CalibrationProblem& problem, const Eigen::VectorXd& start,
-                            Progress* progress, FitBudget* budget = nullptr);
+                            Progress* progress, FitBudget* budget = nullptr,
+                            FitStore* kept = nullptr);
 
 // Fits over the short horizon first, then over all fitted frames.
 Calibration FitInStages(const CalibrationProblem& problem, const Eigen::VectorXd& start,
@@ -54,14 +59,15 @@ Calibration FitInStages(const CalibrationProblem& problem, const Eigen::VectorXd
 
 // Fits all fitted frames at once, from near the solution.
 Calibration RefineFit(const CalibrationProblem& problem, const Eigen::VectorXd& near,
-                      Progress* progress, FitBudget* budget = nullptr);
+                      Progress* progress, FitBudget* budget = nullptr, FitStore* kept = nullptr);
 
 // Fits from the problem's start. A distant start may lead to a local minimum that is off by a
 // period of a vibration: where the residual is far above the noise, the moduli are started from
 // other values too and the best fit is kept. `beginning`: the fit over the short horizon, where it
 // was made before.
 Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
-                         const Calibration* beginning = nullptr, FitBudget* budget = nullptr);
+                         const Calibration* beginning = nullptr, FitBudget* budget = nullptr,
+                         FitStore* kept = nullptr);
 
 }  // namespace lacuna
 

@@ -67,6 +67,10 @@ class CalibrationProblem {
   // The study's parameters, then the nuisances of each fitted recording.
   const std::vector<CalibratedParameter>& parameters() const { return parameters_; }
   const std::string& UnitOf(size_t parameter) const { return units_[parameter]; }  // SI unit
+  // Whether a parameter is a modulus, of which a search for the start tries multiples.
+  bool IsModulus(size_t parameter) const {
+    return parameters_[parameter].log_scale && units_[parameter] == "Pa";
+  }
   Eigen::VectorXd Start() const;
   // The standard deviations that whiten the residuals, m: of a marker's coordinate, and of a
   // scanned point along the surface normal. 0 where no recording has markers or scans,

@@ -23,8 +23,8 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage, or its files.
-constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 28;
+constexpr int kMeshVersion = 2;
+constexpr int kCalibrationVersion = 30;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
@@ -59,8 +59,8 @@ struct CalibrationStage {
 };
 
 CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& reference,
-                            Progress* progress) {
-  const AdaptedFit fit = FitWithAdaptiveTimeStep(reference.mesh, &study, progress);
+                            Progress* progress, FitStore* kept) {
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(reference.mesh, &study, progress, kept);
   const Calibration& calibration = fit.calibration;
   const CalibrationProblem problem(study, reference.mesh);
   CalibrationStage stage;
@@ -174,9 +174,12 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
 
   std::map<std::string, std::string> behind = inputs;
   behind["mesh"] = run.ResultHash("mesh");
+  FitStore kept(study.output / "fits.json", {{"version", kCalibrationVersion},
+                                             {"configuration", study.configuration.dump()},
+                                             {"behind", behind}});
   CalibrationStage stage = RunStage<CalibrationStage>(
       &run, {"calibration", kCalibrationVersion, study.configuration, behind}, progress,
-      [&] { return Calibrated(study, reference, progress); },
+      [&] { return Calibrated(study, reference, progress, &kept); },
       [](const CalibrationStage& value, const std::filesystem::path& folder) {
         WriteCalibrationFile(value.record, folder / "calibration.json");
         if (!value.misfit.empty()) SaveCsv(value.misfit, folder / "misfit.csv");
@@ -187,6 +190,7 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
       [](const std::filesystem::path& folder) {
         return CalibrationStage{ReadCalibrationFile(folder / "calibration.json"), {}, {}, {}, {}};
       });
+  kept.Drop();
   run.Finish();
   stage.record.mesh = reference.quality;
   stage.record.mesh_notes = reference.notes;

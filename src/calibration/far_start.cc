@@ -23,12 +23,11 @@ using FitMemory = CalibrationProblem::FitMemory;
 
 // `values` with the fitted moduli multiplied by `factor`, within their bounds.
 Eigen::VectorXd Scaled(const CalibrationProblem& problem, Eigen::VectorXd values, double factor) {
-  const std::vector<ModelParameter>& fitted = problem.study().fitted;
-  for (size_t k = 0; k < fitted.size(); ++k) {
+  for (size_t k = 0; k < problem.parameters().size(); ++k) {
+    if (!problem.IsModulus(k)) continue;
     const CalibratedParameter& parameter = problem.parameters()[k];
     double& value = values[static_cast<Eigen::Index>(k)];
-    if (parameter.log_scale && fitted[k].unit == "Pa")
-      value = std::clamp(value * factor, parameter.min, parameter.max);
+    value = std::clamp(value * factor, parameter.min, parameter.max);
   }
   return values;
 }

@@ -13,7 +13,7 @@ std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& par
   for (size_t k = 0; k < parameters.size(); ++k) {
     const CalibratedParameter& parameter = parameters[k];
     const double value = values[static_cast<Eigen::Index>(k)];
-    const double mean = std::isnan(parameter.prior_mean) ? parameter.start : parameter.prior_mean;
+    const double mean = PriorMeanOf(parameter);
     const double unit = parameter.log_scale ? value : 1;
     const double change = parameter.log_scale ? std::log(mean / value) : mean - value;
     priors.push_back({unit * change, unit * parameter.prior_deviation, false});

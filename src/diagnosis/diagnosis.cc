@@ -32,7 +32,7 @@ constexpr double kEvidencePerHalving = 16;
 struct DiagnosisSetting {
   const DiagnosisOptions& options;
   Progress* progress;
-  RefitStore* kept;
+  FitStore* kept;
 };
 
 // The study, restricted to the first part of each fitted recording.
@@ -198,7 +198,7 @@ Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::V
 }  // namespace
 
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                   const DiagnosisOptions& options, Progress* progress, RefitStore* kept,
+                   const DiagnosisOptions& options, Progress* progress, FitStore* kept,
                    const std::optional<OtherMesh>& other_mesh) {
   SceneColumns known;
   known.other_mesh = other_mesh;

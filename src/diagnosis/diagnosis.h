@@ -20,10 +20,10 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "calibration/fit_store.h"
 #include "core/progress.h"
 #include "diagnosis/decision_input.h"
 #include "diagnosis/diagnosis_result.h"
-#include "diagnosis/refit_store.h"
 
 namespace lacuna {
 
@@ -39,7 +39,7 @@ struct DiagnosisOptions {
 // continues there; null: they are not kept. `other_mesh`: what the fit has found about the mesh
 // (KnownErrors); empty: nothing. Throws Interrupted.
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                   const DiagnosisOptions& options, Progress* progress, RefitStore* kept = nullptr,
+                   const DiagnosisOptions& options, Progress* progress, FitStore* kept = nullptr,
                    const std::optional<OtherMesh>& other_mesh = {});
 
 // What a decision without any refit of an effect would be made from, with all effects of the

@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 
 // Raised when the diagnosis changes so that its result does.
-constexpr int kDiagnosisVersion = 50;
+constexpr int kDiagnosisVersion = 51;
 
 std::filesystem::path ResultFile(const std::filesystem::path& run) {
   return run / "diagnosis" / "diagnosis.json";
@@ -147,7 +147,7 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
   }
   const CalibrationProblem problem(fitted.study, fitted.mesh);
   MakeFolder(ResultFile(run).parent_path());
-  RefitStore kept(RefitsFile(run), OriginOf(run, options));
+  FitStore kept(RefitsFile(run), OriginOf(run, options));
   const Diagnosis diagnosis = Diagnose(problem, fitted.values, options, progress, &kept,
                                        ReadOtherMesh(FinishedStage(run, "calibration")));
   SaveDecisionInput(diagnosis.decision_input, DecisionFolder(run));

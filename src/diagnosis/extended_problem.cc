@@ -104,7 +104,7 @@ void Append(const Eigen::MatrixXd& numbers, std::string* bytes) {
 }  // namespace
 
 BaselineModel RankedBaseline(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                             const EffectRanking& ranking, Progress* progress, RefitStore* kept) {
+                             const EffectRanking& ranking, Progress* progress, FitStore* kept) {
   return {problem, values, ranking.misfit, progress, kept, ranking.noise, ranking.ModelError()};
 }
 

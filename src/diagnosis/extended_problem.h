@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "calibration/fit_store.h"
 #include "calibration/linear_misfit.h"
 #include "core/progress.h"
 #include "diagnosis/effect_ranking.h"
 #include "diagnosis/marginal_nuisances.h"
-#include "diagnosis/refit_store.h"
 
 namespace lacuna {
 
@@ -24,14 +24,14 @@ struct BaselineModel {
   const Eigen::VectorXd& values;   // the fitted values of problem.parameters()
   const LinearisedMisfit& misfit;  // at `values`
   Progress* progress;
-  RefitStore* kept = nullptr;  // finished fits are read from here and added to it; null: not kept
-  NoiseLevel noise = {};       // with which refits are compared
-  double model_error = 0;      // EffectRanking::ModelError()
+  FitStore* kept = nullptr;  // finished fits are read from here and added to it; null: not kept
+  NoiseLevel noise = {};     // with which refits are compared
+  double model_error = 0;    // EffectRanking::ModelError()
 };
 // The one that was ranked: with the misfit, the noise and the model error of `ranking`.
 BaselineModel RankedBaseline(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                              const EffectRanking& ranking, Progress* progress,
-                             RefitStore* kept = nullptr);
+                             FitStore* kept = nullptr);
 
 struct NamedEstimate {
   std::string name, unit;  // SI

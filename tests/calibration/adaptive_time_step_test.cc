@@ -96,6 +96,9 @@ TEST_F(AdaptiveTimeStepOfABar, SaysWhereNoStepIsShortEnough) {
   EXPECT_GT(fit.step_error, 0.2);
   EXPECT_THAT(fit.note, testing::HasSubstr("may be too long: half of it would change the fitted "
                                            "frames by"));
+  // Each step is a quarter of the last one, so that the budget, of 200 predictions with the first
+  // one, ends before the number of step lengths does.
+  EXPECT_THAT(fit.note, testing::HasSubstr("the predictions that a fit may take are used up"));
   EXPECT_THAT(fit.note, testing::HasSubstr("motion.time_step gives a shorter one"));
 }
 

@@ -17,6 +17,7 @@
 #include "effects/catalogue.h"
 #include "prediction/recording_noise.h"
 #include "support/held_bar.h"
+#include "support/replace_in_file.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
@@ -241,11 +242,7 @@ TEST(CalibrationProblem, DoesNotUseWhatIsHeldOut) {
 
 // As if marker m7 were 1.5 mm nearer to the clamp than it is.
 void Misplace(const std::filesystem::path& file) {
-  std::string text = FileContent(file);
-  const std::string place = "m7, position: [0.08 m";
-  ASSERT_NE(text.find(place), std::string::npos) << text;
-  text.replace(text.find(place), place.size(), "m7, position: [0.0785 m");
-  std::ofstream(file) << text;
+  ReplaceInFile(file, "m7, position: [0.08 m", "m7, position: [0.0785 m");
 }
 
 // Where a marker is on the object, a fitted recording tells for one that is not fitted.

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
+#include <optional>
 #include <string>
 
 #include "calibration/calibration_fits.h"
@@ -12,9 +12,11 @@
 #include "calibration/linear_misfit.h"
 #include "calibration/parameter_response.h"
 #include "calibration/size_errors.h"
+#include "calibration/step_errors.h"
 #include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
 #include "support/held_bar.h"
+#include "support/replace_in_file.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
@@ -35,96 +37,153 @@ struct BarFit {
   }
 };
 
-void ReplaceInFile(const std::filesystem::path& file, const std::string& from,
-                   const std::string& to) {
-  std::string text = FileContent(file);
-  ASSERT_NE(text.find(from), std::string::npos);
-  text.replace(text.find(from), from.size(), to);
-  std::ofstream(file) << text;
-}
+// A bar of few elements, fitted to a film of a finer one. What several tests use is computed once.
+class MeshLimitOfACoarseBar : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TemporaryFolder;
+    WriteBarRecording(folder_->Path(), FilmHeldBar({}));
+    // Held at its face: a clamp of some depth would reach more nodes of a finer mesh.
+    ReplaceInFile(*folder_ / "recording.yaml", "point: [0.002 m", "point: [0.00001 m");
+    coarse_ = new BarFit(folder_->Path(), "4000 mm^3");
+    misfit_ = new LinearisedMisfit(Problem().Linearise(Values(), /*with_jacobian=*/true));
+  }
+  static void TearDownTestSuite() {
+    delete misfit_;
+    delete coarse_;
+    delete folder_;
+  }
 
-TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
-  const TemporaryFolder folder;
-  WriteBarRecording(folder.Path(), FilmHeldBar({}));
-  // Held at its face: a clamp of some depth would reach more nodes of a finer mesh.
-  ReplaceInFile(folder / "recording.yaml", "point: [0.002 m", "point: [0.00001 m");
-  const BarFit coarse(folder.Path(), "4000 mm^3"), fine(folder.Path(), "400 mm^3");
-  const Eigen::VectorXd& values = coarse.calibration.parameters;
-  const Eigen::VectorXd before = coarse.problem.Linearise(values, false).residual;
-  const KnownErrors errors = FindKnownErrors(coarse.problem, values);
-  const Eigen::VectorXd& limit = errors.at_mesh_limit;
-  ASSERT_EQ(limit.size(), values.size());
-  // A coarse mesh is stiff: its modulus is fitted too low.
-  const double missing = fine.calibration.parameters[0] - values[0];
-  EXPECT_GT(missing, coarse.calibration.estimates[0].posterior_deviation * values[0]);
+  static const std::filesystem::path& Folder() { return folder_->Path(); }
+  static const BarFit& Coarse() { return *coarse_; }
+  static const CalibrationProblem& Problem() { return coarse_->problem; }
+  static const Eigen::VectorXd& Values() { return coarse_->calibration.parameters; }
+  static const LinearisedMisfit& MisfitThere() { return *misfit_; }
+  static const KnownErrors& Errors() {
+    static const KnownErrors errors = FindKnownErrors(Problem(), Values());
+    return errors;
+  }
+  static const std::optional<OtherMesh>& Finer() {
+    static const std::optional<OtherMesh> finer = MakeOtherMesh(Problem(), Values(), MisfitThere());
+    return finer;
+  }
+  // The residual on that finer mesh with parameters changed by `change`, and the study's steps.
+  static Eigen::VectorXd ResidualOnFiner(const Eigen::VectorXd& change) {
+    const PredictionStudy study = Problem().WithEstimatedNoise();
+    const auto on_finer = WithOtherElements(study, Problem().body()->mesh, kRatio);
+    EXPECT_TRUE(on_finer.has_value());
+    if (!on_finer) return {};
+    EXPECT_EQ(on_finer->ratio, Finer()->ratio);
+    return on_finer->problem->Linearise(MovedBy(Problem().parameters(), Values(), change), false)
+        .residual;
+  }
+
+  static constexpr double kRatio = 12;  // that of a mesh with few elements
+
+ private:
+  static inline TemporaryFolder* folder_ = nullptr;
+  static inline BarFit* coarse_ = nullptr;
+  static inline LinearisedMisfit* misfit_ = nullptr;
+};
+
+// A coarse mesh is stiff: its modulus is fitted too low.
+TEST_F(MeshLimitOfACoarseBar, IsWhatAFinerMeshIsFittedWith) {
+  const BarFit fine(Folder(), "400 mm^3");
+  const Eigen::VectorXd& limit = Errors().at_mesh_limit;
+  ASSERT_EQ(limit.size(), Values().size());
+  EXPECT_TRUE(Errors().other_mesh.has_value());
+  const double of_fine = fine.calibration.parameters[0], missing = of_fine - Values()[0];
+  ParameterEstimate estimate = Coarse().calibration.estimates[0];
+  EXPECT_GT(missing, estimate.posterior_deviation * Values()[0]);
   OtherMesh refined;
   refined.ratio = static_cast<double>(fine.problem.body()->ElementCount()) /
-                  static_cast<double>(coarse.problem.body()->ElementCount());
+                  static_cast<double>(Problem().body()->ElementCount());
   const double share_of_limit = 1 / refined.ToLimit();
-  EXPECT_NEAR(share_of_limit * (limit[0] - values[0]), missing, 0.25 * missing);
-  ParameterEstimate estimate = coarse.calibration.estimates[0];
-  const double of_fine = fine.calibration.parameters[0];
+  EXPECT_NEAR(share_of_limit * (limit[0] - Values()[0]), missing, 0.25 * missing);
   EXPECT_LT(estimate.high, of_fine);
-  CountModelErrors(coarse.problem.parameters()[0], limit[0], errors.deviation[0], &estimate);
+  CountModelErrors(Problem().parameters()[0], limit[0], Errors().deviation[0], &estimate);
   EXPECT_GT(estimate.high, of_fine) << "an interval that counts the mesh";
   EXPECT_LT(estimate.low, of_fine);
-  // With parameters of its own a finer mesh moves as the coarse one does; with the same, it parts.
-  const LinearisedMisfit misfit = coarse.problem.Linearise(values, /*with_jacobian=*/true);
-  const auto finer = MakeOtherMesh(coarse.problem, values, misfit);
-  ASSERT_TRUE(finer.has_value());
-  // What was found is kept, and where it was kept the finer mesh is not simulated there again.
-  ASSERT_TRUE(errors.other_mesh.has_value());
-  SaveOtherMesh(*errors.other_mesh, folder.Path());
-  auto kept = ReadOtherMesh(folder.Path());
+}
+
+// What was found is kept, and where it was kept the finer mesh is not simulated there again.
+TEST_F(MeshLimitOfACoarseBar, IsFoundFromWhatWasKept) {
+  ASSERT_TRUE(Finer().has_value());
+  SaveOtherMesh(*Finer(), Folder());
+  auto kept = ReadOtherMesh(Folder());
   ASSERT_TRUE(kept.has_value());
-  EXPECT_EQ(kept->other, errors.other_mesh->other);
-  const auto from_kept = MakeOtherMesh(coarse.problem, values, misfit, &*kept);
+  EXPECT_EQ(kept->other, Finer()->other);
+  const auto from_kept = MakeOtherMesh(Problem(), Values(), MisfitThere(), &*kept);
   ASSERT_TRUE(from_kept.has_value());
-  EXPECT_LT((from_kept->other - finer->other).norm(), 0.2 * (finer->other - finer->own).norm());
+  EXPECT_LT((from_kept->other - Finer()->other).norm(),
+            0.2 * (Finer()->other - Finer()->own).norm());
   constexpr double kMark = 1e-4;  // m
   kept->other[0] += kMark;
-  const auto marked = MakeOtherMesh(coarse.problem, values, misfit, &*kept);
+  const auto marked = MakeOtherMesh(Problem(), Values(), MisfitThere(), &*kept);
   ASSERT_TRUE(marked.has_value());
   EXPECT_GT(marked->other[0] - from_kept->other[0], 0.5 * kMark);
-  const PredictionStudy study = coarse.problem.WithEstimatedNoise();
-  constexpr double kRatio = 12;  // that of a mesh with few elements
-  const auto on_finer = WithOtherElements(study, coarse.problem.body()->mesh, kRatio);
-  ASSERT_TRUE(on_finer.has_value());
-  ASSERT_EQ(on_finer->ratio, finer->ratio);
-  const auto part = [&](const Eigen::VectorXd& change) {
-    const Eigen::VectorXd there =
-        on_finer->problem->Linearise(MovedBy(coarse.problem.parameters(), values, change), false)
-            .residual;
-    return WhitenedRows(there - before, misfit, 0, false).norm();
+}
+
+// With parameters of its own a finer mesh moves as the coarse one does; with the same, it parts.
+TEST_F(MeshLimitOfACoarseBar, ComesFromAFinerMeshInPhase) {
+  ASSERT_TRUE(Finer().has_value());
+  const Eigen::VectorXd before = Problem().Linearise(Values(), false).residual;
+  const Eigen::VectorXd with_the_same =
+      ResidualOnFiner(Eigen::VectorXd::Zero(Values().size())) - before;
+  const Eigen::VectorXd with_its_own = ResidualOnFiner(Finer()->change) - before;
+  const auto length = [&](const Eigen::VectorXd& part) {
+    return WhitenedRows(part, MisfitThere(), 0, false).norm();
   };
-  const double with_the_same = part(Eigen::VectorXd::Zero(values.size()));
-  EXPECT_LT(part(finer->change), 0.5 * with_the_same);
+  EXPECT_LT(length(with_its_own), 0.5 * length(with_the_same));
   // With long steps on both meshes the difference is nearly the same one.
-  const Eigen::VectorXd with_steps =
-      on_finer->problem
-          ->Linearise(MovedBy(coarse.problem.parameters(), values, finer->change), false)
-          .residual -
-      before;
-  EXPECT_LT((finer->other - finer->own - with_steps).norm(), 0.3 * with_steps.norm());
-  const Eigen::VectorXd again = ResidualAtRatio(coarse.problem, values, *finer, kRatio);
-  ASSERT_EQ(again.size(), finer->other.size());
+  EXPECT_LT((Finer()->other - Finer()->own - with_its_own).norm(), 0.3 * with_its_own.norm());
+}
+
+TEST_F(MeshLimitOfACoarseBar, ComesFromTheResidualAtItsRatio) {
+  ASSERT_TRUE(Finer().has_value());
+  const Eigen::VectorXd before = Problem().Linearise(Values(), false).residual;
+  const Eigen::VectorXd again = ResidualAtRatio(Problem(), Values(), *Finer(), kRatio);
+  ASSERT_EQ(again.size(), Finer()->other.size());
   // The last step of the search, which may remove half of ‖difference‖², is added to first order.
-  EXPECT_LT((again - finer->other).norm(), 0.03 * (finer->other - finer->own).norm());
-  EXPECT_EQ(coarse.problem.Linearise(values, false).residual, before)
+  EXPECT_LT((again - Finer()->other).norm(), 0.03 * (Finer()->other - Finer()->own).norm());
+  EXPECT_EQ(Problem().Linearise(Values(), false).residual, before)
       << "a prediction depends on nothing that was predicted before it";
-  // The dimensions of the object add a deviation of their own, by the response to each of them.
-  PredictionStudy measured = study;
+}
+
+// The dimensions of the object add a deviation of their own, by the response to each of them.
+TEST_F(MeshLimitOfACoarseBar, LeavesTheUncertaintyOfTheDimensions) {
+  PredictionStudy measured = Problem().WithEstimatedNoise();
   measured.size_deviation = 0;
   const KnownErrors without =
-      FindKnownErrors(CalibrationProblem(measured, coarse.problem.body()->mesh), values);
-  const Eigen::MatrixXd by_sizes = ParameterResponse(coarse.problem, values, misfit, true)
-                                       .To(ChangesBySize(coarse.problem, values, misfit));
+      FindKnownErrors(CalibrationProblem(measured, Problem().body()->mesh), Values());
+  const Eigen::MatrixXd by_sizes = ParameterResponse(Problem(), Values(), MisfitThere(), true)
+                                       .To(ChangesBySize(Problem(), Values(), MisfitThere()));
   ASSERT_EQ(by_sizes.cols(), 3);
-  for (Eigen::Index k = 0; k < values.size(); ++k) {
-    const double scale = coarse.problem.parameters()[k].log_scale ? values[k] : 1;
+  for (Eigen::Index k = 0; k < Values().size(); ++k) {
+    const double scale = Problem().parameters()[k].log_scale ? Values()[k] : 1;
     const double expected = std::hypot(without.deviation[k], by_sizes.row(k).norm() / scale);
-    EXPECT_NEAR(errors.deviation[k], expected, 1e-6 * expected) << k;
+    EXPECT_NEAR(Errors().deviation[k], expected, 1e-6 * expected) << k;
   }
+}
+
+// Beyond the limit of the mesh, at_limit has the response to infinitely short steps.
+TEST_F(MeshLimitOfACoarseBar, IsMovedOnByTheLimitOfTheTimeStep) {
+  const auto step = FindStepErrors(Problem(), Values(), MisfitThere());
+  ASSERT_TRUE(step.has_value());
+  const Eigen::VectorXd change =
+      ParameterResponse(Problem(), Values(), MisfitThere(), true).To(step->to_limit);
+  ASSERT_EQ(Errors().at_mesh_limit.size(), Values().size());
+  for (Eigen::Index k = 0; k < Values().size(); ++k) {
+    const double from = Errors().at_mesh_limit[k];
+    const bool log_scale = Problem().parameters()[k].log_scale;
+    const double expected = log_scale ? from * std::exp(change[k] / Values()[k]) : from + change[k];
+    // Rounding, and a millionth of the change.
+    EXPECT_NEAR(Errors().at_limit[k], expected,
+                1e-12 * std::abs(from) + 1e-6 * std::abs(expected - from))
+        << k;
+  }
+  // Steps of 1.5 ms slow the vibration, so that without them the modulus is another one.
+  EXPECT_GT(std::abs(change[0]), 1e-3 * Values()[0]);
 }
 
 // How far a fit is from the measurements is that of the fitted frames: they do not become closer

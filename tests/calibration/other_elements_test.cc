@@ -8,6 +8,7 @@
 #include "geometry/mesh_io.h"
 #include "prediction/predicted_body.h"
 #include "support/held_bar.h"
+#include "support/replace_in_file.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -27,10 +28,7 @@ class OtherElementsTest : public testing::Test {
     return ReadBarStudy(folder_.Path(), {{"max_volume: 1000 mm^3, order: 2", mesh}});
   }
   void ReplaceInRecording(const std::string& from, const std::string& to) const {
-    std::string text = FileContent(folder_ / "recording.yaml");
-    ASSERT_NE(text.find(from), std::string::npos);
-    text.replace(text.find(from), from.size(), to);
-    std::ofstream(folder_ / "recording.yaml") << text;
+    ReplaceInFile(folder_ / "recording.yaml", from, to);
   }
   void GiveMesh(const TetMesh& mesh) const {
     WriteTetMesh(folder_ / "bar.msh", mesh);

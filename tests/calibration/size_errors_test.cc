@@ -4,12 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <limits>
 #include <memory>
 
 #include "calibration/known_errors.h"
 #include "support/held_bar.h"
+#include "support/replace_in_file.h"
 #include "support/temporary_folder.h"
 #include "support/test_effect.h"
 
@@ -18,14 +18,6 @@ namespace {
 
 const char* const kClampBeyond = "half_space: {point: [0.002 m, 0 m, 0 m], normal: [-1, 0, 0]}";
 const char* const kHoldBeyond = "{half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}";
-
-void ReplaceIn(const std::filesystem::path& file, const std::string& from, const std::string& to) {
-  std::string text = FileContent(file);
-  const size_t at = text.find(from);
-  ASSERT_NE(at, std::string::npos) << text;
-  text.replace(at, from.size(), to);
-  std::ofstream(file) << text;
-}
 
 TetMesh CoarseBar() { return BarMesh({3, 1, 1}, 1); }
 
@@ -53,8 +45,8 @@ TEST_F(SizeErrorsOfABar, DoNotDependOnHowAClampIsDescribed) {
   ASSERT_EQ(beyond.changes.cols(), 3);
   for (int axis = 0; axis < 3; ++axis) EXPECT_GT(beyond.changes.col(axis).norm(), 0) << axis;
 
-  ReplaceIn(folder_ / "recording.yaml", kClampBeyond,
-            "box: {min: [0 m, -0.01 m, -0.01 m], max: [0.002 m, 0.01 m, 0.01 m]}");
+  ReplaceInFile(folder_ / "recording.yaml", kClampBeyond,
+                "box: {min: [0 m, -0.01 m, -0.01 m], max: [0.002 m, 0.01 m, 0.01 m]}");
   // The hand holds the far face alone, which a longer object moves out of the box.
   const SizeChanges boxes =
       ChangesOf(ReadBarStudy(folder_.Path(), {{kHoldBeyond,
@@ -69,8 +61,8 @@ TEST_F(SizeErrorsOfABar, DoNotDependOnHowAClampIsDescribed) {
 TEST_F(SizeErrorsOfABar, AreThoseOfEachRecordingsOwnClamp) {
   const std::string near_end = "{half_space: {point: [0.002 m, 0 m, 0 m], normal: [-1, 0, 0]}}";
   WriteBarRecording(folder_ / "other", FilmHeldBar({}));
-  ReplaceIn(folder_ / "other" / "recording.yaml", kClampBeyond,
-            "half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}");
+  ReplaceInFile(folder_ / "other" / "recording.yaml", kClampBeyond,
+                "half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}");
   const SizeChanges alone = ChangesOf(ReadBarStudy(folder_ / "other", {{kHoldBeyond, near_end}}));
   const std::string release = "      release: 0.0437 s\n";
   const SizeChanges both = ChangesOf(ReadBarStudy(

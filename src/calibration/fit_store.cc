@@ -1,4 +1,4 @@
-#include "diagnosis/refit_store.h"
+#include "calibration/fit_store.h"
 
 #include <fstream>
 #include <system_error>
@@ -20,9 +20,12 @@ json ToJson(const Calibration& calibration) {
   const Eigen::VectorXd& parameters = calibration.parameters;
   return {{"usable", calibration.usable},
           {"message", calibration.message},
+          {"is_out_of_budget", calibration.is_out_of_budget},
+          {"iterations", calibration.iterations},
           {"parameters", std::vector<double>(parameters.begin(), parameters.end())},
           {"estimates", estimates},
           {"predictions", calibration.predictions},
+          {"start_rms", calibration.start_rms},
           {"rms", calibration.rms},
           {"cost", calibration.cost}};
 }
@@ -31,12 +34,15 @@ Calibration FromJson(const json& value) {
   Calibration calibration;
   calibration.usable = value.at("usable");
   calibration.message = value.at("message");
+  calibration.is_out_of_budget = value.at("is_out_of_budget");
+  calibration.iterations = value.at("iterations");
   const std::vector<double> parameters = value.at("parameters");
   calibration.parameters = Eigen::Map<const Eigen::VectorXd>(
       parameters.data(), static_cast<Eigen::Index>(parameters.size()));
   for (const json& estimate : value.at("estimates"))
     calibration.estimates.push_back(EstimateFromJson(estimate));
   calibration.predictions = value.at("predictions");
+  calibration.start_rms = value.at("start_rms");
   calibration.rms = value.at("rms");
   calibration.cost = value.at("cost");
   return calibration;
@@ -44,7 +50,7 @@ Calibration FromJson(const json& value) {
 
 }  // namespace
 
-RefitStore::RefitStore(std::filesystem::path file, json origin)
+FitStore::FitStore(std::filesystem::path file, json origin)
     : file_(std::move(file)), content_{{"schema_version", 1}, {"of", std::move(origin)}} {
   content_["fits"] = json::object();
   std::ifstream stream(file_);
@@ -58,20 +64,20 @@ RefitStore::RefitStore(std::filesystem::path file, json origin)
   }
 }
 
-const Calibration* RefitStore::Find(const std::string& key) const {
+const Calibration* FitStore::Find(const std::string& key) const {
   const std::lock_guard lock(mutex_);
   const auto found = fits_.find(key);
   return found != fits_.end() ? &found->second : nullptr;
 }
 
-void RefitStore::Keep(const std::string& key, const Calibration& calibration) {
+void FitStore::Keep(const std::string& key, const Calibration& calibration) {
   const std::lock_guard lock(mutex_);
   content_["fits"][key] = ToJson(calibration);
   WriteFileAtomically(file_, content_.dump() + "\n");
   fits_[key] = calibration;
 }
 
-void RefitStore::Drop() {
+void FitStore::Drop() {
   std::error_code ignored;  // a file that remains is harmless: its origin is checked
   std::filesystem::remove(file_, ignored);
 }

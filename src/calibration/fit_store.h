@@ -1,10 +1,10 @@
-// Keeps the fits of a diagnosis that is under way in a file, so that a diagnosis that was stopped
-// continues where it was.
+// Keeps the finished parts of a fit or a diagnosis that is under way in a file, so that one that
+// was stopped continues where it was.
 //
-// The file refits.json holds {"schema_version", "of": origin, "fits": {key: fit}}. Each fit is
+// The file holds {"schema_version", "of": origin, "fits": {key: fit}}. Each fit is
 // written as soon as it is finished. Find() and Keep() may be called from several threads.
-#ifndef LACUNA_DIAGNOSIS_REFIT_STORE_H_
-#define LACUNA_DIAGNOSIS_REFIT_STORE_H_
+#ifndef LACUNA_CALIBRATION_FIT_STORE_H_
+#define LACUNA_CALIBRATION_FIT_STORE_H_
 
 #include <filesystem>
 #include <map>
@@ -16,19 +16,18 @@
 
 namespace lacuna {
 
-// Of a calibration only the parts that a refit uses are kept: whether it is usable, its message,
-// parameters, estimates, number of predictions, rms and cost.
-class RefitStore {
+// All of a calibration is kept but its covariance, inflation and memory.
+class FitStore {
  public:
-  // Reads `file` if it has the same origin (the fit and the options of the diagnosis). Otherwise,
+  // Reads `file` if it has the same origin (what the whole is computed from). Otherwise,
   // and if the file is missing or damaged, the store starts empty.
-  RefitStore(std::filesystem::path file, nlohmann::json origin);
+  FitStore(std::filesystem::path file, nlohmann::json origin);
 
   // Null: no such fit was kept. `key`: a hash of everything that determines the fit.
   const Calibration* Find(const std::string& key) const;
   // Adds a fit and rewrites the file. Throws InputError if it cannot be written.
   void Keep(const std::string& key, const Calibration& calibration);
-  // Removes the file, once the result of the diagnosis has been saved.
+  // Removes the file, once the result of the whole has been saved.
   void Drop();
 
  private:
@@ -40,4 +39,4 @@ class RefitStore {
 
 }  // namespace lacuna
 
-#endif  // LACUNA_DIAGNOSIS_REFIT_STORE_H_
+#endif  // LACUNA_CALIBRATION_FIT_STORE_H_
