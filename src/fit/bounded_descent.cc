@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -81,97 +82,39 @@ class BoundedDescent {
     }
     residuals_ = end_.prediction.residual.size();
     cost_ = CostOf(end_.prediction, end_.parameters);
+    // A search without a residual is at its minimum.
+    least_gain_ = options.cost_tolerance /
+                  static_cast<double>(std::max<Eigen::Index>(1, end_.prediction.Observed()));
     TakeDerivatives();
   }
 
   DescentEnd Run() {
-    // A search without a residual is at its minimum.
-    const double least_gain = options_.cost_tolerance / static_cast<double>(std::max<Eigen::Index>(
-                                                            1, end_.prediction.Observed()));
-    int rejected = 0;           // consecutive steps
-    std::string failed_beside;  // why the last of them could not be predicted
-    double radius = kInfinity;
-    double departure = 0;  // length of the first step from the latest point with derivatives
-    std::string undifferentiable;  // why derivatives could not be computed at some point
-    std::optional<Trial> bent;     // to be tried next
-    // Takes derivatives in place of secants. Where there are none, the search goes on from the
-    // latest point that has them, with shorter steps and without secants.
-    const auto differentiate = [&] {
-      failed_beside = Differentiate();
-      if (failed_beside.empty()) return;
-      undifferentiable = failed_beside;
-      radius = kMuchShorter * departure;
-      ++rejected;
-    };
     for (;;) {
       const QuadraticCost model = Model();
-      const Trial trial = bent ? *std::exchange(bent, {}) : Straight(model, radius);
-      const Eigen::VectorXd& step = trial.step;
-      const double reach = LengthOf(step, model);
-      const double promised = trial.promised;
-      const double length = step.cwiseQuotient(typical_).lpNorm<Eigen::Infinity>();
-      const bool gains_little =
-          !(promised > kLeastOfCurved * least_gain) ||
-          (!(promised > least_gain) && !(model.GainOf(Step(model, kInfinity)) > least_gain));
-      if (gains_little || length < kShortestStep) {
+      const Trial trial = bent_ ? *std::exchange(bent_, {}) : Straight(model, radius_);
+      const bool is_there = GainsLittle(trial, model) || IsShort(trial.step);
+      if (!is_there && IsUsedUp()) break;
+      if (!is_there && !IsHopeless(model)) {
+        Try(trial, model);
+      } else if (!is_exact_) {
         // Secants may promise little where derivatives promise more.
-        if (!is_exact_) {
-          differentiate();
-          continue;
-        }
+        TakeDerivativesHere();
+      } else if (is_there) {
         // If nothing near the best parameters can be predicted, they need not be a minimum.
-        end_.usable = failed_beside.empty();
+        end_.usable = failed_beside_.empty();
         if (!end_.usable)
-          end_.message = "no prediction beside the best parameters: " + failed_beside;
+          end_.message = "no prediction beside the best parameters: " + failed_beside_;
         break;
-      }
-      if (IsUsedUp()) break;
-      if (IsHopeless(model)) {
-        if (!is_exact_) {
-          differentiate();
-          continue;
-        }
+      } else {
         end_.message =
             "the search was ended because it would not come close enough to the measurements";
         break;
       }
-
-      ++end_.iterations;
-      const Eigen::VectorXd values = Moved(step);
-      Prediction there = Predict(values, /*with_jacobian=*/false);
-      const double cost = CostOf(there, values);
-      const double gained = cost_ > 0 && std::isfinite(cost) ? 1 - cost / cost_ : -kInfinity;
-      const bool is_poor = gained < kPoorGain * promised;
-      if (gained > 0) {
-        // A poor step along secants tells less of the trust region than of the secants.
-        if (gained > kGoodGain * promised && rejected == 0)
-          radius = std::max(radius, kLonger * reach);
-        else if (trial.is_bent && !is_poor)
-          radius = std::max(radius, reach);
-        else if (is_poor && is_exact_)
-          radius = kShorter * reach;
-        if (is_exact_) departure = reach;
-        MoveBy(step, model, values, std::move(there), cost);
-        rejected = 0;
-        failed_beside.clear();
-        if (is_poor || !undifferentiable.empty()) differentiate();
-      } else if (!is_exact_) {
-        ++rejected;
-        differentiate();
-      } else {
-        ++rejected;
-        failed_beside = there.usable ? "" : there.message;
-        // promised / (2 promised − gained), where the cost falls by 2 promised per step at first.
-        const double turn = gained > -kInfinity ? promised / (2 * promised - gained) : 0;
-        radius = std::min(radius, std::clamp(turn, kMuchShorter, kShorter) * reach);
-        if (there.usable) bent = Bend(trial, there.residual, model);
-        if (bent && !(bent->promised > least_gain)) bent.reset();
-      }
     }
     if (!is_exact_) Differentiate();
     end_.cost = cost_;
-    if (!end_.usable && failed_beside.empty() && !undifferentiable.empty())
-      end_.message += "; it could not take derivatives everywhere: " + undifferentiable;
+    if (!end_.usable && failed_beside_.empty() && !undifferentiable_.empty())
+      end_.message += "; it could not take derivatives everywhere: " + undifferentiable_;
     return std::move(end_);
   }
 
@@ -186,6 +129,64 @@ class BoundedDescent {
     if (prediction.usable)
       CHECK_EQ(prediction.residual.size(), residuals_) << "the number of residuals has changed";
     return prediction;
+  }
+
+  bool GainsLittle(const Trial& trial, const QuadraticCost& model) const {
+    return !(trial.promised > kLeastOfCurved * least_gain_) ||
+           (!(trial.promised > least_gain_) &&
+            !(model.GainOf(Step(model, kInfinity)) > least_gain_));
+  }
+
+  bool IsShort(const Eigen::VectorXd& step) const {
+    return step.cwiseQuotient(typical_).lpNorm<Eigen::Infinity>() < kShortestStep;
+  }
+
+  // Predicts the end of a step, goes there if that lowers the cost, and chooses the length of the
+  // next step.
+  void Try(const Trial& trial, const QuadraticCost& model) {
+    ++end_.iterations;
+    const double reach = LengthOf(trial.step, model);
+    const Eigen::VectorXd values = Moved(trial.step);
+    Prediction there = Predict(values, /*with_jacobian=*/false);
+    const double cost = CostOf(there, values);
+    const double gained = cost_ > 0 && std::isfinite(cost) ? 1 - cost / cost_ : -kInfinity;
+    if (gained > 0) {
+      const bool is_poor = gained < kPoorGain * trial.promised;
+      // A poor step along secants tells less of the trust region than of the secants.
+      if (gained > kGoodGain * trial.promised && rejected_ == 0)
+        radius_ = std::max(radius_, kLonger * reach);
+      else if (trial.is_bent && !is_poor)
+        radius_ = std::max(radius_, reach);
+      else if (is_poor && is_exact_)
+        radius_ = kShorter * reach;
+      if (is_exact_) departure_ = reach;
+      MoveBy(trial.step, model, values, std::move(there), cost);
+      rejected_ = 0;
+      failed_beside_.clear();
+      if (is_poor || !undifferentiable_.empty()) TakeDerivativesHere();
+      return;
+    }
+    ++rejected_;
+    if (!is_exact_) {
+      TakeDerivativesHere();
+      return;
+    }
+    failed_beside_ = there.usable ? "" : there.message;
+    // promised / (2 promised − gained), where the cost falls by 2 promised per step at first.
+    const double turn = gained > -kInfinity ? trial.promised / (2 * trial.promised - gained) : 0;
+    radius_ = std::min(radius_, std::clamp(turn, kMuchShorter, kShorter) * reach);
+    if (there.usable) bent_ = Bend(trial, there.residual, model);
+    if (bent_ && !(bent_->promised > least_gain_)) bent_.reset();
+  }
+
+  // Takes derivatives in place of secants. Where there are none, the search goes on from the latest
+  // point that has them, with shorter steps and without secants.
+  void TakeDerivativesHere() {
+    failed_beside_ = Differentiate();
+    if (failed_beside_.empty()) return;
+    undifferentiable_ = failed_beside_;
+    radius_ = kMuchShorter * departure_;
+    ++rejected_;
   }
 
   // Whether no further step may be tried; says so in the result.
@@ -382,11 +383,18 @@ class BoundedDescent {
   Eigen::Index residuals_ = 0;
   Eigen::VectorXd typical_, low_, high_;  // of φ
   DescentEnd end_;
-  double cost_ = 0;  // at the best parameters
+  double cost_ = 0;        // at the best parameters
+  double least_gain_ = 0;  // a fraction of the cost; steps that promise less end the search
   // n × parameters, ∂r/∂φ there: derivatives, or secants since a step was made.
   Eigen::MatrixXd columns_;
   bool is_exact_ = false;
   std::pair<Eigen::VectorXd, Prediction> differentiated_;  // the latest point with derivatives
+  double departure_ = 0;                                   // length of the first step from there
+  double radius_ = kInfinity;                              // of the trust region
+  int rejected_ = 0;                                       // consecutive steps
+  std::string failed_beside_;     // why the last of them could not be predicted
+  std::string undifferentiable_;  // why derivatives could not be computed at some point
+  std::optional<Trial> bent_;     // to be tried next
 };
 
 }  // namespace

@@ -47,6 +47,26 @@ void AttachToTriangles(const BoundarySurface& boundary, const SurfaceHits& hits,
   }
 }
 
+// The normal at the nearest point of the boundary. Interpolated vertex normals (`smooth`) vary
+// continuously, and so does the residual when the nearest triangle of a point changes. They can
+// deviate far from the normal of the face near a sharp edge, and are not used there. On the edge
+// itself, rounding decides which of its triangles is the nearest, so that `to_point`, from the
+// nearest point to the scanned one, takes the place of the face's normal: the gradient of the
+// distance. It has no direction for a point on the edge, whose residual is 0 with any normal.
+Eigen::Vector3d NormalAt(const Eigen::Vector3d& smooth, const Eigen::Vector3d& face_normal,
+                         double smallest_barycentric, const Eigen::Vector3d& to_point,
+                         double sigma) {
+  constexpr double kOnEdge = 1e-9;
+  constexpr double kNoDistance = 1e-6;  // of the standard deviation
+  Eigen::Vector3d sharp = face_normal;
+  if (smallest_barycentric < kOnEdge) {
+    if (to_point.norm() < kNoDistance * sigma) return smooth.normalized();
+    sharp = to_point.normalized() * (to_point.dot(smooth) < 0 ? -1 : 1);
+  }
+  const bool is_smooth = smooth.norm() >= 0.5 && smooth.normalized().dot(sharp) >= kSmoothAgreement;
+  return is_smooth ? smooth.normalized() : sharp;
+}
+
 }  // namespace
 
 Eigen::Matrix<double, Eigen::Dynamic, 3> WhitenedDirections(const Observations& observations,
@@ -88,16 +108,12 @@ Observations ObserveScan(const BoundarySurface& boundary, const Eigen::Matrix3Xd
   AttachToTriangles(boundary, hits, &all);
   std::vector<Eigen::Index> kept;
   for (Eigen::Index j = 0; j < scan.Size(); ++j) {
-    // Interpolated vertex normals vary continuously, and so does the residual when the nearest
-    // triangle of a point changes. At a sharp edge they can deviate far from the face normal.
     const Eigen::Vector3i triangle = surface.triangles.col(hits.triangle[j]);
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-    for (int a = 0; a < 3; ++a) normal += hits.barycentric(a, j) * vertex_normals.col(triangle[a]);
-    const Eigen::Vector3d face_normal = face_normals.col(hits.triangle[j]);
-    if (normal.norm() < 0.5 || normal.normalized().dot(face_normal) < kSmoothAgreement) {
-      normal = face_normal;
-    }
-    normal.normalize();
+    Eigen::Vector3d smooth = Eigen::Vector3d::Zero();
+    for (int a = 0; a < 3; ++a) smooth += hits.barycentric(a, j) * vertex_normals.col(triangle[a]);
+    const Eigen::Vector3d normal =
+        NormalAt(smooth, face_normals.col(hits.triangle[j]), hits.barycentric.col(j).minCoeff(),
+                 scan.points.col(j) - hits.point.col(j), sigma);
 
     all.target.col(j) = scan.points.col(j);
     all.normal.col(j) = normal;

@@ -39,7 +39,8 @@ Eigen::Matrix<double, Eigen::Dynamic, 3> WhitenedDirections(const Observations& 
 Observations Concatenate(const Observations& first, const Observations& second);
 
 // Observes, for each scanned point, the nearest point of the body's boundary at the node positions
-// `x` (3 × n), along the normal of the boundary with standard deviation `sigma` > 0. Points farther
+// `x` (3 × n), along the normal of the boundary with standard deviation `sigma` > 0. On a sharp
+// edge, which has no single normal, it is the direction between the two points. Points farther
 // away than `reach`, and points whose own normal (if known) deviates by more than 60°, are left
 // out, because they belong to another surface.
 Observations ObserveScan(const BoundarySurface& boundary, const Eigen::Matrix3Xd& x,

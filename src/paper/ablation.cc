@@ -7,13 +7,14 @@
 
 #include "core/atomic_file.h"
 #include "core/csv_text.h"
+#include "core/json_number.h"
 #include "core/text_layout.h"
 
 namespace lacuna {
 namespace {
 
-// Relative difference of D that counts where the mesh noise was not measured.
-constexpr double kDefaultNoise = 0.01;
+// The mesh noise, as a share of D, that is assumed where it was not measured.
+constexpr double kAssumedNoise = 0.01;
 // Ratio of the evaluation times from which on the difference is mentioned.
 constexpr double kCostRatio = 1.5;
 
@@ -28,14 +29,24 @@ const AblationRow* Find(const std::vector<AblationRow>& rows, const std::string&
   return nullptr;
 }
 
+// The noise of D from one mesh to another, with which differences of D are compared.
+struct MeshNoise {
+  double share = kAssumedNoise;  // standard deviation, as a share of D
+  bool is_measured = false;
+};
+
 // The error of a modulus as a factor of at least 1.
 double FactorOff(double ratio) { return std::exp(std::abs(std::log(ratio))); }
 
-std::string Compared(const AblationRow& row, const AblationRow& other, double noise) {
+std::string Compared(const AblationRow& row, const AblationRow& other, const MeshNoise& noise) {
   const double difference = row.residual.best.median / other.residual.best.median - 1;
-  if (std::abs(difference) <= 2 * noise)
+  if (std::abs(difference) <= 2 * noise.share && noise.is_measured)
     return fmt::format("D equals that of {} within two standard deviations of the mesh noise",
                        other.name);
+  if (std::abs(difference) <= 2 * noise.share)
+    return fmt::format(
+        "D equals that of {} within {:g} % (mesh noise not measured; {:g} % assumed)", other.name,
+        200 * noise.share, 100 * noise.share);
   return fmt::format("D {:.1f} % {} than that of {}", 100 * std::abs(difference),
                      difference < 0 ? "lower" : "higher", other.name);
 }
@@ -57,7 +68,7 @@ std::string ParametersInWords(const Table1Configuration& configuration, const Ab
 }
 
 std::string InWords(const Table1Configuration& configuration, const AblationRow& row,
-                    const AblationRow* other, double noise) {
+                    const AblationRow* other, const MeshNoise& noise) {
   if (row.seeds == 0) return "no evaluation succeeded";
   std::string text = "the reference of the other rows";
   if (other != nullptr) {
@@ -68,7 +79,7 @@ std::string InWords(const Table1Configuration& configuration, const AblationRow&
   text += ParametersInWords(configuration, row, other);
   const double below = 1 - row.residual.best.median / row.residual.at_truth.median;
   const bool seeks_material = IsSearched(configuration, 2) || IsSearched(configuration, 3);
-  if (seeks_material && below > 2 * noise) {
+  if (seeks_material && below > 2 * noise.share) {
     text += fmt::format(
         "; {:.1f} % below D at the true y and p, so that the smallest D does not "
         "identify them",
@@ -112,13 +123,6 @@ void Add(const Table1Study& study, const Table1Configuration& configuration,
   values->evaluations.push_back(static_cast<double>(found.evaluations.size()));
   values->failures.push_back(found.failures);
   values->seconds.push_back(found.Seconds());
-}
-
-nlohmann::json JsonOf(const SeedRange& range) {
-  const auto number = [](double v) { return std::isnan(v) ? nlohmann::json() : nlohmann::json(v); };
-  return {{"median", number(range.median)},
-          {"least", number(range.least)},
-          {"largest", number(range.largest)}};
 }
 
 // The columns of the table, named with their units.
@@ -179,8 +183,11 @@ std::string CsvOf(const AblationSummary& summary) {
 
 AblationSummary SummariseAblation(const Table1Study& study, const Table1Result& result) {
   AblationSummary summary;
-  summary.mesh_noise = Summarise(study, result).mesh_noise;
-  const double noise = std::isnan(summary.mesh_noise) ? kDefaultNoise : summary.mesh_noise;
+  const Table1Summary table = Summarise(study, result);
+  summary.mesh_noise = table.mesh_noise;
+  summary.turns = table.turns;
+  MeshNoise noise;
+  if (!std::isnan(summary.mesh_noise)) noise = {summary.mesh_noise, true};
   for (size_t c = 0; c < study.configurations.size(); ++c) {
     const Table1Configuration& configuration = study.configurations[c];
     AblationRow row;
@@ -225,7 +232,8 @@ AblationSummary SummariseAblation(const Table1Study& study, const Table1Result& 
 std::string AblationText(const Table1Study& study, const Table1Result& result) {
   const AblationSummary summary = SummariseAblation(study, result);
   std::string text = fmt::format(
-      "Medians of {} seed(s). Truth: y = {:g} kPa, p = {:g}. D per point in mm, |D_anim| in m.\n\n"
+      "Medians of {} seed(s), or of those whose search succeeded where a row names fewer.\n"
+      "Truth: y = {:g} kPa, p = {:g}. D per point in mm, |D_anim| in m.\n\n"
       "row                 D start    best  |D_anim|   best  drop %      q    v cm³   y kPa  "
       "y/true      p  evals failed    s\n",
       result.seeds.size(), 1e-3 * study.true_young_modulus, study.true_poisson_ratio);
@@ -245,17 +253,21 @@ std::string AblationText(const Table1Study& study, const Table1Result& result) {
             cell(1e-3 * row.optimum.young_modulus.median, 8, 1) +
             cell(row.optimum.modulus_factor.median, 8, 2) +
             cell(row.optimum.poisson_ratio.median, 7, 3) + cell(row.evaluations.median, 7, 0) +
-            cell(row.failures.median, 7, 0) + cell(row.seconds.median, 5, 0) + "\n";
+            cell(row.failures.median, 7, 0) + cell(row.seconds.median, 5, 0);
+    if (static_cast<size_t>(row.seeds) < result.seeds.size())
+      text += fmt::format("  {} of {} seeds", row.seeds, result.seeds.size());
+    text += "\n";
   }
   text += "\nWhat each row shows (in brackets: the row that it is compared with)\n";
   for (const AblationRow& row : summary.rows) {
     text += Wrapped(row.question.empty() ? row.shows : row.question + " " + row.shows + ".",
                     PaddedRight(row.name, 20), std::string(20, ' '));
   }
-  if (!std::isnan(summary.mesh_noise)) {
-    text += fmt::format("\nMesh noise: {:.2f} % of D per point, from {} turns of S_0\n",
-                        100 * summary.mesh_noise, result.turned.size());
-  }
+  text += std::isnan(summary.mesh_noise)
+              ? fmt::format("\nMesh noise: not measured; {:g} % of D per point is assumed\n",
+                            100 * kAssumedNoise)
+              : fmt::format("\nMesh noise: {:.2f} % of D per point, from {} turns of S_0\n",
+                            100 * summary.mesh_noise, summary.turns);
   return text + QuotientText(result.quotients);
 }
 
@@ -275,11 +287,9 @@ void WriteAblation(const Table1Study& study, const Table1Result& result,
     json["rows"].push_back(entry);
   }
   for (const MeshQuotient& quotient : result.quotients) {
-    json["remesh_quotients"].push_back(
-        {{"variable", quotient.variable},
-         {"step", quotient.step},
-         {"slope_m_per_range",
-          std::isnan(quotient.slope) ? nlohmann::json() : nlohmann::json(quotient.slope)}});
+    json["remesh_quotients"].push_back({{"variable", quotient.variable},
+                                        {"step", quotient.step},
+                                        {"slope_m_per_range", NumberOrNull(quotient.slope)}});
   }
   WriteFileAtomically(folder / "ablation.txt", AblationText(study, result));
   WriteFileAtomically(folder / "ablation.json", json.dump(2) + "\n");

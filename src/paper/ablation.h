@@ -41,7 +41,10 @@ struct AblationRow {
 
 struct AblationSummary {
   std::vector<AblationRow> rows;
-  double mesh_noise = kNotMeasured;  // noise of the mean of D per point, see Table1Summary
+  // Noise of the mean of D per point, see Table1Summary. Where it was not measured, the sentences
+  // of the rows assume 1 % and say so.
+  double mesh_noise = kNotMeasured;
+  int turns = 0;  // the number of rotated meshes from which it was measured
 };
 
 // Rows in the order of the configurations. A row is compared with the one that it names, or the

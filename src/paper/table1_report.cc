@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/atomic_file.h"
+#include "core/json_number.h"
 #include "paper/evaluation_record.h"
 #include "record/csv_table.h"
 #include "report/line_chart.h"
@@ -111,12 +112,13 @@ void AppendEvidence(const Table1Study& study, const Table1Result& result,
     *text += fmt::format(
         "\nMesh noise: the same parameters on {} meshes of S_0 turned by 0.001 rad each: standard "
         "deviation\n{:.2f} % of D per point, {:.2f} % of the sum\n",
-        result.turned.size(), Percent(summary.mesh_noise), Percent(summary.mesh_noise_of_sum));
+        summary.turns, Percent(summary.mesh_noise), Percent(summary.mesh_noise_of_sum));
   }
   const Table1Seed& first = result.seeds.front();
-  *text +=
-      "\nWith CPD in the loop (the paper's align), seed 1: |D_anim| m, at the max and at the "
-      "optimum\n";
+  *text += fmt::format(
+      "\nWith CPD in the loop (the paper's align), seed {}: |D_anim| m, at the max and at the "
+      "optimum\n",
+      first.seed);
   for (size_t c = 0; c < first.searches.size(); ++c) {
     const ObjectiveEvaluation& worst = first.searches[c].worst_in_loop;
     const ObjectiveEvaluation& best = first.searches[c].best_in_loop;
@@ -187,15 +189,9 @@ void WriteTraces(const Table1Study& study, const Table1Seed& seed,
     SaveCsv(table, folder / (name + ".csv"));
     lines.push_back({name, columns.col(0), 1e3 * columns.col(6)});
   }
-  WriteLineChart(folder / "traces.svg",
-                 {"Table 1, seed 1: D per point, mm", "evaluation", "mm", lines});
-}
-
-nlohmann::json JsonOf(const SeedRange& range) {
-  const auto number = [](double v) { return std::isnan(v) ? nlohmann::json() : nlohmann::json(v); };
-  return {{"median", number(range.median)},
-          {"least", number(range.least)},
-          {"largest", number(range.largest)}};
+  WriteLineChart(
+      folder / "traces.svg",
+      {fmt::format("Table 1, seed {}: D per point, mm", seed.seed), "evaluation", "mm", lines});
 }
 
 nlohmann::json JsonOf(const Table1Study& study, const Table1Result& result) {
@@ -259,6 +255,12 @@ SeedRange RangeOf(std::vector<double> values) {
   return {median, values.front(), values.back()};
 }
 
+nlohmann::json JsonOf(const SeedRange& range) {
+  return {{"median", NumberOrNull(range.median)},
+          {"least", NumberOrNull(range.least)},
+          {"largest", NumberOrNull(range.largest)}};
+}
+
 Table1Summary Summarise(const Table1Study& study, const Table1Result& result) {
   Table1Summary summary;
   summary.seeds = static_cast<int>(result.seeds.size());
@@ -302,6 +304,9 @@ Table1Summary Summarise(const Table1Study& study, const Table1Result& result) {
   }
   summary.mesh_noise = RelativeSpread(result.turned, study.configurations.front().search.measure);
   summary.mesh_noise_of_sum = RelativeSpread(result.turned, ObjectiveMeasure::kSum);
+  summary.turns = static_cast<int>(
+      std::count_if(result.turned.begin(), result.turned.end(),
+                    [](const ObjectiveEvaluation& turned) { return turned.usable; }));
   return summary;
 }
 

@@ -15,7 +15,8 @@ namespace lacuna {
 struct SeedRange {
   double median = kNotMeasured, least = kNotMeasured, largest = kNotMeasured;
 };
-SeedRange RangeOf(std::vector<double> values);
+SeedRange RangeOf(std::vector<double> values);  // values that are NaN are left out
+nlohmann::json JsonOf(const SeedRange& range);  // null for what was not measured
 
 // A configuration, summarised over all seeds whose search succeeded.
 struct Table1Row {
@@ -39,6 +40,7 @@ struct Table1Summary {
   // Relative standard deviation under small rotations of S_0, of the searched measure and of the
   // sum.
   double mesh_noise = kNotMeasured, mesh_noise_of_sum = kNotMeasured;
+  int turns = 0;  // the number of rotated meshes that could be evaluated
 };
 Table1Summary Summarise(const Table1Study& study, const Table1Result& result);
 

@@ -14,13 +14,11 @@
 #include "experiment/known_loads.h"
 #include "fit/step_force_fitter.h"
 #include "geometry/nearest.h"
-#include "geometry/rigid_fit.h"
-#include "geometry/surface_tracks.h"
+#include "reconstruction/body_registration.h"
 #include "reconstruction/followed_sensitivity.h"
 #include "reconstruction/force_model_choice.h"
 #include "reconstruction/point_noise.h"
 #include "reconstruction/recorded_states.h"
-#include "registration/surface_alignment.h"
 
 namespace lacuna {
 namespace {
@@ -33,13 +31,6 @@ Eigen::VectorXd Stacked(const Eigen::Matrix3Xd& points) {
   return Eigen::Map<const Eigen::VectorXd>(points.data(), points.size());
 }
 
-// The places of points of the body in a recorded state, found by CPD. Where it failed, they are NaN
-// and their deviation is infinite.
-struct Correspondence {
-  Eigen::Matrix3Xd target;  // 3 × n, m
-  Eigen::VectorXd sigma;    // m, of each target, tangential to the surface
-};
-
 class Follower {
  public:
   Follower(const ReconstructionStudy& study, const ReferenceBody& reference,
@@ -47,9 +38,8 @@ class Follower {
            const std::vector<int>& moduli, FollowedMotion* motion)
       : study_(study),
         states_(states),
-        tracked_(tracked),
-        are_identified_(HasIdentifiedPoints(study, states)),
-        motion_(*motion) {
+        motion_(*motion),
+        registration_(study, *motion->body, states, tracked, &motion->warnings) {
     SetNoise();
     model_ = {motion_.body, study.effects, {}};
     grips_ = std::make_unique<GripTracks>(study.recording, reference.mesh, &model_);
@@ -58,9 +48,6 @@ class Follower {
       known_forces_ = MakeKnownForces(study.recording, model_);
     model_.effects.insert(model_.effects.end(), known_forces_.begin(), known_forces_.end());
     history_ = RestHistory(model_);
-    if (const FrameState& front = states.front(); front.tracked.cols() > 0)
-      tracks_ = TrackOnSurface(motion_.body->boundary,
-                               are_identified_ ? front.tracked : front.cloud.points);
     StepOptions options;
     options.scheme = study.follow.scheme;
     options.refuse_inverted = !study.follow.allow_inverted;
@@ -78,24 +65,24 @@ class Follower {
     frame.force = Eigen::Matrix3Xd::Zero(3, motion_.body->NodeCount());
     frame.pseudo_force = frame.force;
     frame.solver = {true, "reference", "", 0};
-    MeasureResidual(states_.front(), &frame);
+    MeasureResidual(0, &frame);
     motion_.frames.push_back(std::move(frame));
     grips_->Begin(history_.time);
   }
 
   // Returns false when the frame could not be followed; its record says why.
   bool Follow(size_t k) {
-    frame_ = k;
     const FrameState& state = states_[k];
     const Body& body = *motion_.body;
-    // In quasi-static motion every frame is an equilibrium, independent of the previous frame.
+    // In quasi-static motion every frame is an equilibrium, independent of the previous frame; a
+    // first frame that is not the reference shape is one in any case.
     const bool is_static = study_.follow.scheme == TimeScheme::kQuasiStatic;
     const double time_step = is_static || k == 0 ? 0 : state.time - states_[k - 1].time;
 
     FollowedFrame frame;
     frame.time = state.time;
     const Eigen::Matrix3Xd before = AsPoints(history_.position);
-    const Eigen::Matrix3Xd shift = RegisteredShift(k, before);
+    const Eigen::Matrix3Xd shift = registration_.Shift(k, before);
     frame.pseudo_force = PseudoForce(shift, time_step);
     const RecordedGrip* lost = grips_->Extend(state.time, before, before + shift, MarkersIn(k));
     if (lost != nullptr)
@@ -108,33 +95,13 @@ class Follower {
     grips_->Place(state.time, &start);
     MotionHistory from = history_;
     if (time_step == 0) from.time = state.time;
-    const StepEquation equation(model_, from, study_.follow.scheme, time_step);
+    const TimeScheme scheme = time_step > 0 ? study_.follow.scheme : TimeScheme::kQuasiStatic;
+    const StepEquation equation(model_, from, scheme, time_step);
 
     ForceFit fit;
-    int iterations = 0;
     if (forces_.HasUnknowns()) {
-      const Correspondence correspondence = Register(AsPoints(start), state);
-      StepForceFitter fitter(model_, equation, forces_, start, coefficients_);
-      for (int round = 0; round < study_.follow.alignment_rounds; ++round) {
-        ThrowIfInterrupted();
-        ThrowIfOverMemoryLimit();
-        const Observations seen = Observe(AsPoints(start), state, correspondence);
-        frame.observations = static_cast<int>(seen.Count());
-        // The prior of free forces is centred at those of the last frame, and that of coefficients
-        // at 0: as a random walk, coefficients that the scans do not determine would drift.
-        ForceFitOptions options = study_.follow.fit;
-        // Correspondences that will be searched for again do not need an exact fit.
-        const bool is_last = round + 1 == study_.follow.alignment_rounds;
-        if (!is_last) options.function_tolerance = std::max(options.function_tolerance, 1e-2);
-        fit = fitter.Fit(seen, {force_, {}}, options);
-        iterations += fit.factorisations;
-        if (!fit.IsUsable()) break;
-        const Eigen::MatrixXd covariance =
-            is_last ? fitter.Covariance(fit, seen, options) : Eigen::MatrixXd();
-        if (covariance.size() > 0) frame.force_deviation = NetForceDeviation(forces_, covariance);
-        start = fit.position;
-      }
-      if (!fit.IsUsable()) return Fail("forces", fit.message, iterations, &frame);
+      fit = FitForces(k, equation, start, &frame);
+      if (!fit.IsUsable()) return Fail("forces", fit.message, &frame);
       frame.weighted_rms = fit.weighted_rms;
     } else {
       fit.force = Eigen::VectorXd::Zero(3 * body.NodeCount());
@@ -146,10 +113,9 @@ class Follower {
     if (time_step == 0 && fit.IsUsable()) after.position = fit.position;
     const StepSummary step = time_step > 0 ? stepper_->Step(time_step, fit.force, &after)
                                            : stepper_->Equilibrium(fit.force, &after);
-    if (!step.IsUsable()) return Fail("step", step.message, iterations, &frame);
+    if (!step.IsUsable()) return Fail("step", step.message, &frame);
     if (sensitivity_ != nullptr) {
-      sensitivity_->Advance(from, time_step > 0 ? study_.follow.scheme : TimeScheme::kQuasiStatic,
-                            time_step, after.position);
+      sensitivity_->Advance(from, scheme, time_step, after.position);
       frame.position_derivative = sensitivity_->position();
     }
     history_ = after;
@@ -161,10 +127,10 @@ class Follower {
     if (forces_.HasUnknowns() && state.tracked.cols() == 0) {
       const TriMesh surface = BoundaryAt(body.boundary, frame.position);
       const std::string problem = FarFromScan(surface, state.cloud.points);
-      if (!problem.empty()) return Fail("scan", problem, iterations, &frame);
+      if (!problem.empty()) return Fail("scan", problem, &frame);
     }
     frame.force = AsPoints(fit.force + KnownForces());
-    MeasureResidual(state, &frame);
+    MeasureResidual(k, &frame);
     const bool is_stopped = fit.status == ForceFit::Status::kEndedEarly;
     if (is_stopped) {
       motion_.warnings.push_back(
@@ -173,20 +139,53 @@ class Follower {
                       study_.frames[k], fit.message, fit.weighted_rms));
     }
     frame.solver = {true, is_stopped ? "ended early" : "converged", is_stopped ? fit.message : "",
-                    iterations};
+                    frame.solver.iterations};
     motion_.frames.push_back(std::move(frame));
     return true;
   }
 
  private:
-  bool Fail(const char* what, const std::string& message, int iterations, FollowedFrame* frame) {
-    frame->solver = {false, "no convergence", fmt::format("{}: {}", what, message), iterations};
+  // Fits the forces of the step that ends in state k, from the node positions `start` at its end.
+  // Each round looks for the nearest scanned points where the last one has led. Sets what the frame
+  // tells of the fit.
+  ForceFit FitForces(size_t k, const StepEquation& equation, Eigen::VectorXd start,
+                     FollowedFrame* frame) {
+    const BodyRegistration::Correspondence correspondence =
+        registration_.Register(k, AsPoints(start));
+    StepForceFitter fitter(model_, equation, forces_, start, coefficients_);
+    ForceFit fit;
+    for (int round = 0; round < study_.follow.alignment_rounds; ++round) {
+      ThrowIfInterrupted();
+      ThrowIfOverMemoryLimit();
+      const Observations seen =
+          registration_.Observe(k, AsPoints(start), correspondence, motion_.noise);
+      frame->observations = static_cast<int>(seen.Count());
+      // The prior of free forces is centred at those of the last frame, and that of coefficients at
+      // 0: as a random walk, coefficients that the scans do not determine would drift.
+      ForceFitOptions options = study_.follow.fit;
+      // Correspondences that will be searched for again do not need an exact fit.
+      const bool is_last = round + 1 == study_.follow.alignment_rounds;
+      if (!is_last) options.function_tolerance = std::max(options.function_tolerance, 1e-2);
+      fit = fitter.Fit(seen, {force_, {}}, options);
+      frame->solver.iterations += fit.factorisations;
+      if (!fit.IsUsable()) break;
+      const Eigen::MatrixXd covariance =
+          is_last ? fitter.Covariance(fit, seen, options) : Eigen::MatrixXd();
+      if (covariance.size() > 0) frame->force_deviation = NetForceDeviation(forces_, covariance);
+      start = fit.position;
+    }
+    return fit;
+  }
+
+  bool Fail(const char* what, const std::string& message, FollowedFrame* frame) {
+    frame->solver.usable = false;
+    frame->solver.status = "no convergence";
+    frame->solver.message = fmt::format("{}: {}", what, message);
     const Eigen::Index nodes = motion_.body->NodeCount();
     const auto unknown = std::numeric_limits<double>::quiet_NaN();
     frame->position = Eigen::Matrix3Xd::Constant(3, nodes, unknown);
     frame->force = frame->position;
-    const auto points = are_identified_ ? tracks_.Count() : motion_.body->boundary.node.size();
-    frame->residual = Eigen::Matrix3Xd::Constant(3, points, unknown);
+    frame->residual = Eigen::Matrix3Xd::Constant(3, registration_.Count(), unknown);
     motion_.frames.push_back(std::move(*frame));
     return false;
   }
@@ -196,8 +195,9 @@ class Follower {
     if (!study_.follow.forces.AreFitted()) return;
     motion_.noise = study_.follow.noise;
     if (motion_.noise > 0) return;
-    const PointNoise estimate =
-        NamingWhere(study_.name, [this] { return EstimatePointNoise(states_, are_identified_); });
+    const PointNoise estimate = NamingWhere(study_.name, [this] {
+      return EstimatePointNoise(states_, HasIdentifiedPoints(study_, states_));
+    });
     motion_.noise = estimate.deviation;
     if (!estimate.warning.empty()) motion_.warnings.push_back(estimate.warning);
   }
@@ -207,65 +207,6 @@ class Follower {
     const std::vector<Eigen::Matrix3Xd>& positions = study_.recording.markers.positions;
     if (positions.empty()) return Eigen::Matrix3Xd(3, 0);
     return positions[static_cast<size_t>(study_.frames[k])];
-  }
-
-  PointCloud SimulatedSurface(const Eigen::Matrix3Xd& nodes) const {
-    const TriMesh surface = BoundaryAt(motion_.body->boundary, nodes);
-    return {surface.vertices, VertexNormals(surface)};
-  }
-
-  // The motion of `nodes` from state k − 1 to state k (the paper's displacement field between
-  // consecutive surfaces). The simulated surface takes the place of a state before the first.
-  Eigen::Matrix3Xd RegisteredShift(size_t k, const Eigen::Matrix3Xd& nodes) {
-    if (tracked_ != nullptr) {
-      const Eigen::Matrix3Xd& rest = motion_.body->mesh.nodes;
-      return tracked_->DisplacementAt(k, rest) - tracked_->DisplacementAt(k - 1, rest);
-    }
-    if (are_identified_ && SeenBeside(k) < CpdResult::kFewestPoints) return RigidShift(k, nodes);
-    const PointCloud from = k > 0 ? StatePoints(states_[k - 1]) : SimulatedSurface(nodes);
-    // The search starts from the last motion, because motions are continuous.
-    last_motion_ = Registered(from, StatePoints(states_[k]), &last_motion_).field;
-    if (last_motion_.IsEmpty()) return Eigen::Matrix3Xd::Zero(3, nodes.cols());
-    return last_motion_.Evaluate(nodes);
-  }
-
-  // The number of points that are seen in state k, or in the state before it if that shows fewer.
-  Eigen::Index SeenBeside(size_t k) const {
-    const Eigen::Index here = states_[k].cloud.Size();
-    return k > 0 ? std::min(here, states_[k - 1].cloud.Size()) : here;
-  }
-
-  // The rigid motion of identified points that are too few for CPD. In the first state they are
-  // where the undeformed body has them.
-  Eigen::Matrix3Xd RigidShift(size_t k, const Eigen::Matrix3Xd& nodes) const {
-    if (k == 0) return Eigen::Matrix3Xd::Zero(3, nodes.cols());
-    return FitRigidMotion(states_[k - 1].tracked, states_[k].tracked).motion * nodes - nodes;
-  }
-
-  Eigen::Matrix3Xd TrackedTarget() const {
-    const Eigen::Matrix3Xd& rest = motion_.body->boundary.surface.vertices;
-    return rest + tracked_->DisplacementAt(frame_, rest);
-  }
-
-  // Registers two clouds. A result that has not converged is used with a warning. One that failed
-  // is replaced by unknown displacements (NaN) with an infinite standard deviation.
-  Alignment Registered(const PointCloud& source, const PointCloud& target,
-                       const DisplacementField* previous = nullptr) const {
-    if (previous != nullptr && previous->IsEmpty()) previous = nullptr;
-    Alignment alignment = Align(source, target, study_.registration, previous);
-    if (!alignment.IsUsable()) {
-      const std::string warning =
-          fmt::format("frame {}: registration: {}", study_.frames[frame_], alignment.message);
-      // A frame is registered several times, often with the same outcome.
-      if (motion_.warnings.empty() || motion_.warnings.back() != warning)
-        motion_.warnings.push_back(warning);
-    }
-    if (alignment.field.IsEmpty()) {
-      alignment.displacement =
-          Eigen::Matrix3Xd::Constant(3, source.Size(), std::numeric_limits<double>::quiet_NaN());
-      alignment.standard_deviation = Eigen::VectorXd::Constant(source.Size(), kUnobserved);
-    }
-    return alignment;
   }
 
   // The pseudo-force m α of the paper, with v = d/dt and α = dv/dt.
@@ -290,80 +231,16 @@ class Follower {
     return known;
   }
 
-  // The points that represent the model in a registration: the places of the tracked points that
-  // the first state shows, which exclude sides that are never seen, or its whole surface.
-  PointCloud RegistrationPoints(const Eigen::Matrix3Xd& nodes) const {
-    if (tracks_.Count() == 0) return SimulatedSurface(nodes);
-    return {PointsAt(tracks_, motion_.body->boundary, nodes), {}};
-  }
-
-  Correspondence Register(const Eigen::Matrix3Xd& nodes, const FrameState& state) const {
-    if (are_identified_) return {};
-    if (tracked_ != nullptr) {
-      return {TrackedTarget(),
-              tracked_->DeviationAt(frame_, motion_.body->boundary.surface.vertices)};
-    }
-    const PointCloud points = RegistrationPoints(nodes);
-    const Alignment aligned = Registered(points, StatePoints(state));
-    return {points.points + aligned.displacement, aligned.standard_deviation};
-  }
-
-  Observations Observe(const Eigen::Matrix3Xd& nodes, const FrameState& state,
-                       const Correspondence& correspondence) const {
-    const BoundarySurface& boundary = motion_.body->boundary;
-    if (are_identified_) {
-      return ObserveMarkers(boundary, tracks_.at_rest, state.tracked - tracks_.offset,
-                            motion_.noise);
-    }
-    if (tracks_.Count() > 0) {
-      return ObserveMarkers(boundary, tracks_.at_rest, correspondence.target - tracks_.offset,
-                            motion_.noise);
-    }
-    const double size = BoundingBoxDiagonal(motion_.body->mesh.nodes);
-    // Tangential to the surface only CPD contains information. Along its normal the scanned points
-    // are more accurate where there are any, so that CPD gets a larger standard deviation there.
-    const double slip =
-        study_.follow.tangential_noise > 0 ? study_.follow.tangential_noise : 0.03 * size;
-    const Eigen::VectorXd tangent = correspondence.sigma.cwiseMax(std::max(motion_.noise, slip));
-    const Eigen::VectorXd normal = tangent.cwiseMax(5 * motion_.noise);
-    const Observations registered =
-        ObserveVertices(boundary, nodes, correspondence.target, normal, tangent);
-    const Observations scanned =
-        ObserveScan(boundary, nodes, state.cloud, motion_.noise, study_.follow.reach * size);
-    return Concatenate(registered, scanned);
-  }
-
-  // Sets D of Eq. 1 for the positions of the frame, or the reason why it is not known.
-  void MeasureResidual(const FrameState& state, FollowedFrame* frame) const {
-    const BoundarySurface& boundary = motion_.body->boundary;
-    if (are_identified_) {
-      frame->residual = state.tracked - PointsAt(tracks_, boundary, frame->position);
-      if (frame->residual.array().isNaN().colwise().any().all())
-        frame->residual_problem = "none of the tracked points is seen";
-      return;
-    }
-    const Eigen::Matrix3Xd vertices = BoundaryAt(boundary, frame->position).vertices;
-    if (tracked_ != nullptr) {
-      frame->residual = TrackedTarget() - vertices;
-      frame->residual_problem = tracked_->failures[frame_];
-    } else {
-      const Alignment aligned = Registered(RegistrationPoints(frame->position), StatePoints(state));
-      if (aligned.field.IsEmpty())
-        frame->residual_problem = aligned.message;
-      else
-        frame->residual = aligned.field.Evaluate(vertices);
-    }
-    if (!frame->residual_problem.empty())
-      frame->residual =
-          Eigen::Matrix3Xd::Constant(3, vertices.cols(), std::numeric_limits<double>::quiet_NaN());
+  void MeasureResidual(size_t k, FollowedFrame* frame) const {
+    BodyRegistration::Residual residual = registration_.Measure(k, frame->position);
+    frame->residual = std::move(residual.displacement);
+    frame->residual_problem = std::move(residual.problem);
   }
 
   const ReconstructionStudy& study_;
   const std::vector<FrameState>& states_;
-  const TrackedFrames* tracked_;
-  const bool are_identified_;  // HasIdentifiedPoints
   FollowedMotion& motion_;
-  size_t frame_ = 0;  // frame that is being followed
+  BodyRegistration registration_;
   Model model_;
   std::unique_ptr<GripTracks> grips_;
   ForceModel forces_;
@@ -371,11 +248,7 @@ class Follower {
   MotionHistory history_;
   std::unique_ptr<Stepper> stepper_;
   std::unique_ptr<FollowedSensitivity> sensitivity_;  // null if it was not asked for
-  // All tracked points, or those that the first state shows where they do not identify themselves;
-  // empty for scans.
-  SurfaceTracks tracks_;
   Eigen::Matrix3Xd previous_velocity_;
-  DisplacementField last_motion_;
   Eigen::VectorXd force_, coefficients_;
 };
 

@@ -17,7 +17,7 @@ ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_a
   std::vector<int> nodes;
   if (settings.region) {
     nodes = NamingWhere(study.name + ": forces.region",
-                        [&] { return SelectNodes(*settings.region, body.mesh.nodes); });
+                        [&] { return SelectNodes(*settings.region, body.mesh); });
   } else {
     nodes.assign(body.boundary.node.begin(), body.boundary.node.end());
   }

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
-#include <variant>
 
 #include "core/interrupt.h"
 #include "experiment/frame_states.h"
@@ -23,10 +21,10 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
-constexpr int kStatesVersion = 3;
-constexpr int kReferenceVersion = 1;
-constexpr int kMotionVersion = 4;
-constexpr int kResultsVersion = 4;
+constexpr int kStatesVersion = 4;
+constexpr int kReferenceVersion = 2;
+constexpr int kMotionVersion = 5;
+constexpr int kResultsVersion = 5;
 
 InputFiles InputsOf(const ReconstructionStudy& study) {
   InputFiles inputs;
@@ -41,16 +39,6 @@ InputFiles TruthOf(const ReconstructionStudy& study) {
   for (const auto& [name, file] : FilesOfKnownAnswers(study.validation, study.frames))
     truth.Add(name, StateOf(file));
   return truth;
-}
-
-// The options on which the reference body depends. The nodes that a force region lists are among
-// them, because the numbers are checked against those of the mesh when it is read.
-nlohmann::json OptionsOfMesh(const ReconstructionStudy& study) {
-  nlohmann::json options{{"mesh", study.configuration.at("mesh")}};
-  const std::optional<Region>& region = study.follow.forces.region;
-  if (region && std::holds_alternative<NodeRegion>(region->shape))
-    options["forces.region"] = study.configuration.at("forces").at("region");
-  return options;
 }
 
 }  // namespace
@@ -77,7 +65,7 @@ RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress
   std::map<std::string, std::string> behind{{"surfaces", run.ResultHash("surfaces")}};
   for (const auto& [name, hash] : inputs) behind[name] = hash;
   const auto reference = RunStage<ReferenceBody>(
-      &run, {"mesh", kReferenceVersion, OptionsOfMesh(study), behind}, progress,
+      &run, {"mesh", kReferenceVersion, part({"mesh"}), behind}, progress,
       [&] {
         progress->Begin("mesh", 0);
         ReferenceBody body = MakeReferenceBody(study, states.front());

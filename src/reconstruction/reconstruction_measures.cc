@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "analysis/measure.h"
+#include "core/median.h"
+#include "experiment/frame_states.h"
 #include "fit/force_model.h"
 #include "geometry/embedding.h"
 #include "geometry/nearest.h"
@@ -161,6 +163,49 @@ std::string UnmeasuredWarning(const ReconstructionStudy& study, const FollowedMo
       unmeasured, followed, first, followed - unmeasured);
 }
 
+// Half of the tracked points farther from their places on the model than this: it does not follow
+// them. The noise counts only where the distance is also a visible share of the object's size,
+// since the errors of the mesh exceed a noise near 0.
+constexpr double kManyDeviations = 30;
+constexpr double kVisibleShare = 0.01;
+
+// A sentence about frames in which fitted forces leave the model far from tracked points; empty
+// where there is none. For scanned points, such a frame ends the motion (FarFromScan).
+std::string FarFromTrackedWarning(const ReconstructionStudy& study,
+                                  const std::vector<FrameState>& states,
+                                  const FollowedMotion& motion, double size) {
+  if (!study.follow.forces.AreFitted()) return "";
+  const double least =
+      std::min(kFarFromScan * size, std::max(kManyDeviations * motion.noise, kVisibleShare * size));
+  int followed = 0, far = 0;
+  double largest = 0;
+  size_t worst = 0;
+  for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
+    const FollowedFrame& frame = motion.frames[k];
+    if (!frame.solver.usable || states[k].tracked.cols() == 0) continue;
+    ++followed;
+    std::vector<double> distances;
+    const Eigen::VectorXd lengths = frame.residual.colwise().norm().transpose();
+    for (const double distance : lengths)
+      if (!std::isnan(distance)) distances.push_back(distance);
+    if (distances.empty()) continue;
+    const double middle = Median(std::move(distances));
+    if (middle <= least) continue;
+    ++far;
+    if (middle <= largest) continue;
+    largest = middle;
+    worst = k;
+  }
+  if (far == 0) return "";
+  return fmt::format(
+      "in {} of {} followed frames the model stays far from the tracked points: in frame {}, half "
+      "of them are farther than {:.3g} mm from their places on the model, {:.0f} times the noise "
+      "and {:.2g} % of the object's size. Likely causes are forces that cannot produce the motion "
+      "(`region` and `force_scale` under `forces`), a wrong clamp, and points of another object",
+      far, followed, study.frames[worst], 1e3 * largest, largest / motion.noise,
+      100 * largest / size);
+}
+
 }  // namespace
 
 RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& reference,
@@ -178,6 +223,8 @@ RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& refe
   add(motion.warnings);
   const std::string unmeasured = UnmeasuredWarning(study, motion);
   if (!unmeasured.empty()) add({unmeasured});
+  const std::string far = FarFromTrackedWarning(study, states, motion, record.object_size);
+  if (!far.empty()) add({far});
   record.point_residuals.resize(motion.frames.front().residual.cols(),
                                 static_cast<Eigen::Index>(motion.frames.size()));
   std::vector<LengthSummary> residuals;

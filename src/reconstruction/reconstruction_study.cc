@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "experiment/listed_regions.h"
 #include "experiment/scan_settings.h"
 #include "geometry/mesh_io.h"
 #include "reconstruction/point_noise.h"
@@ -169,9 +170,13 @@ void RequireNoise(const Config& config, const ReconstructionStudy& study) {
   }
 }
 
-// Known forces need a region and must cover the frames. Warns where measured forces are not used.
-void CheckMeasuredForces(const Config& config, ReconstructionStudy* study) {
+// The given paths of grips, and known forces, must cover the frames; known forces need a region.
+// Warns where measured forces are not used.
+void CheckPathsAndForces(const Config& config, ReconstructionStudy* study) {
   Recording& recording = study->recording;
+  const int first = study->frames.front(), last = study->frames.back();
+  if (const std::string problem = DescribeUncoveredPath(recording, first, last); !problem.empty())
+    config.Fail("recording", problem);
   if (study->follow.forces.kind != ForceSettings::Kind::kKnown) {
     if (!recording.object.forces.empty()) {
       recording.warnings.push_back(
@@ -182,20 +187,12 @@ void CheckMeasuredForces(const Config& config, ReconstructionStudy* study) {
   const Config forces = config.Child("forces");
   if (recording.object.forces.empty())
     forces.Fail("model", "known forces, but the recording has no forces");
-  const double first = recording.times[study->frames.front()];
-  const double last = recording.times[study->frames.back()];
-  const double slack = 1e-9 * (last - first);
-  for (const MeasuredForce& force : recording.object.forces) {
+  for (const MeasuredForce& force : recording.object.forces)
     if (!force.region)
       forces.Fail("model",
                   fmt::format("the recording does not say where {} acts (its region)", force.name));
-    const bool is_constant = force.file.empty();
-    const double from = force.times[0], to = force.times[force.times.size() - 1];
-    if (!is_constant && (from > first + slack || to < last - slack)) {
-      forces.Fail("model", fmt::format("{} covers {:g} s to {:g} s, the frames {:g} s to {:g} s",
-                                       force.file.string(), from, to, first, last));
-    }
-  }
+  if (const std::string problem = DescribeUncoveredForce(recording, first, last); !problem.empty())
+    forces.Fail("model", problem);
 }
 
 }  // namespace
@@ -205,7 +202,7 @@ ReconstructionStudy ReadReconstruction(const Config& config) {
     config.Fail("recordings",
                 "makes this an experiment for `lacuna fit`, which predicts; a "
                 "reconstruction has one `recording`");
-  return ReadReconstruction(config, LoadRecording(config.Path("recording")));
+  return ReadReconstruction(config, LoadRecording(config, "recording"));
 }
 
 ReconstructionStudy ReadReconstruction(const Config& config, const Recording& recording) {
@@ -235,6 +232,9 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
   study.effects = ReadEffects(config);
   study.follow = ReadFollow(config, study.recording.data.folder);
   if (study.follow.forces.region) AddFileOf(*study.follow.forces.region, &study.recording);
+  std::vector<Region*> regions = RegionsIn(&study.recording.object);
+  if (study.follow.forces.region) regions.push_back(&*study.follow.forces.region);
+  NumberListedNodes(study.recording, study.mesh, regions);
   ReadValidation(config, &study);
   RequireNoise(config, study);
   config.RefuseUnknownKeys();
@@ -243,7 +243,7 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
                 "has one frame, which would be both the reference shape and the motion; give a "
                 "reference shape or more frames");
   }
-  CheckMeasuredForces(config, &study);
+  CheckPathsAndForces(config, &study);
   for (const std::string& warning : ImplausibleParameters(study.effects))
     study.recording.warnings.push_back(warning);
   if (const std::string warning = GravityWarning(study.recording.object, study.effects);

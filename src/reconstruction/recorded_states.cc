@@ -47,10 +47,8 @@ std::vector<FrameState> LoadFrameStates(const ReconstructionStudy& study, Progre
 }
 
 ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameState& first) {
-  ReferenceRequest request{study.name,         study.recording,      study.mesh,
-                           study.sheet_layers, study.frames.front(), &first.surface};
-  if (study.follow.forces.region) request.regions.push_back(*study.follow.forces.region);
-  return MakeReferenceBody(request);
+  return MakeReferenceBody({study.name, study.recording, study.mesh, study.sheet_layers,
+                            study.frames.front(), &first.surface});
 }
 
 bool FirstFrameIsReference(const ReconstructionStudy& study) {

@@ -126,8 +126,11 @@ Eigen::Vector3d FitDeviation(const Bar& bar, const ForceModel& forces, const For
 
 TEST(ForceFit, GivesTheStandardDeviationOfTheForce) {
   // The mean square error of the net force of a smooth field, in units of its standard deviation,
-  // has the expectation 1. Over 12 components it is below 2.1 in all but 1 % of cases; with a
-  // deviation ten times too large it would be near 0.01.
+  // would have the expectation 1 if the true forces were drawn from the prior. The prior allows
+  // them anywhere on the surface, also near the clamp, where they hardly move anything and the
+  // deviation is that of the prior. The true force acts at the tip alone, so that the error is
+  // smaller: the mean is 0.07. With deviations 2.1 times too large it would be 0.016, with
+  // deviations 2.1 times too small 0.31.
   const Bar bar = MakeBar({7, 3, 2}, 2);
   const ForceModel forces = SmoothForces(*bar.body, bar.body->boundary.node, 0.03, 300);
   double squares = 0;
@@ -142,8 +145,8 @@ TEST(ForceFit, GivesTheStandardDeviationOfTheForce) {
     squares += ((net.force - force).array() / deviation.array()).square().sum();
     count += 3;
   }
-  EXPECT_LT(squares / count, 2.1);
-  EXPECT_GT(squares / count, 0.01);
+  EXPECT_LT(squares / count, 0.3);
+  EXPECT_GT(squares / count, 0.02);
 }
 
 TEST(ForceFit, AStepUnderTheFittedForcesReachesTheFittedPositions) {

@@ -30,6 +30,21 @@ TEST(Observations, AScannedPointObservesTheNearestSurfaceAlongItsNormal) {
   EXPECT_LT((place - Eigen::Vector3d(0.4, 0.3, 1)).norm(), 1e-12);
 }
 
+// Two or three faces of the cube are equally near; the direction must not be that of one of them.
+TEST(Observations, AScannedPointBeyondASharpEdgeObservesItAlongTheDistance) {
+  const Cube cube;
+  PointCloud scan;
+  scan.points.resize(3, 3);
+  scan.points.col(0) << 0.4, 1.04, 1.03;
+  scan.points.col(1) << 1.02, 1.01, 1.02;
+  scan.points.col(2) << 0.4, 1, 1;
+  const Observations seen = ObserveScan(cube.boundary, cube.mesh.nodes, scan, 0.01, 0.1);
+  ASSERT_EQ(seen.Count(), 3);
+  EXPECT_LT((seen.normal.col(0) - Eigen::Vector3d(0, 0.8, 0.6)).norm(), 1e-9);
+  EXPECT_LT((seen.normal.col(1) - Eigen::Vector3d(2, 1, 2) / 3).norm(), 1e-9);
+  EXPECT_GT(seen.normal.col(2).tail<2>().minCoeff(), 0.3);
+}
+
 TEST(Observations, PointsOutOfReachOrFacingAwayObserveNothing) {
   const Cube cube;
   PointCloud scan;

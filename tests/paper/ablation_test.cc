@@ -7,12 +7,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "paper/made_up_table1.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::ThrowsMessage;
@@ -21,41 +23,11 @@ constexpr double kYoung = 1e6, kPoisson = 0.3;
 
 Table1Configuration Configuration(const std::string& name, const std::string& against,
                                   bool seeks_material) {
-  ParameterSearchSettings settings;
-  settings.variables = {{"radius_edge_ratio", 1.5, 3, 2, SearchScale::kLinear},
-                        {"max_volume", 1e-5, 1e-3, 1e-4, SearchScale::kLogarithmic},
-                        {"young_modulus", 1e5, 1e7, 5e5, SearchScale::kLogarithmic},
-                        {"poisson_ratio", 0.1, 0.45, 0.2, SearchScale::kLinear}};
-  if (!seeks_material)
-    for (const size_t i : {2u, 3u})
-      settings.variables[i].lower = settings.variables[i].upper = settings.variables[i].start;
-  Table1Configuration configuration{name, Config::Parse("row: 1", name + ".yaml"), settings, {}};
+  Table1Configuration configuration = MadeUpConfiguration(name, seeks_material);
   configuration.varies = "method";
   configuration.question = "Is it as good?";
   configuration.against = against;
   return configuration;
-}
-
-ObjectiveEvaluation Evaluated(double per_point) {
-  ObjectiveEvaluation evaluation;
-  evaluation.usable = true;
-  evaluation.residual_per_point = per_point;
-  evaluation.residual_rms = 1.2 * per_point;
-  evaluation.residual_sum = 300 * per_point;
-  evaluation.seconds = 1;
-  return evaluation;
-}
-
-// A search from 4 mm to `best`, at `young_modulus`.
-Table1Search Search(double best, double young_modulus, double seconds = 1) {
-  Table1Search search;
-  search.found.evaluations = {Evaluated(4e-3), Evaluated(best)};
-  search.found.evaluations[1].seconds = seconds;
-  search.found.parameters = {{2, 1e-4, 5e5, 0.2}, {1.8, 2e-4, young_modulus, 0.25}};
-  search.found.best = 1;
-  search.worst = 0;
-  search.at_truth = Evaluated(3.5e-3);
-  return search;
 }
 
 struct Ablation {
@@ -70,9 +42,10 @@ Ablation MakeAblation() {
                                    Configuration("rival", "", true),
                                    Configuration("mesh", "rival", false)};
   ablation.result.seeds = {
-      {1, {Search(3e-3, 2e6), Search(2.4e-3, 1.25e6, 9), Search(2.4e-3, 5e5)}}};
+      {1, {MadeUpSearch(3e-3, 2e6), MadeUpSearch(2.4e-3, 1.25e6, 9), MadeUpSearch(2.4e-3, 5e5)}}};
   // A spread of 1 %.
-  ablation.result.turned = {Evaluated(0.99e-3), Evaluated(1e-3), Evaluated(1.01e-3)};
+  ablation.result.turned = {MadeUpEvaluation(0.99e-3), MadeUpEvaluation(1e-3),
+                            MadeUpEvaluation(1.01e-3)};
   return ablation;
 }
 
@@ -115,6 +88,28 @@ TEST(Ablation, ARowThatFoundNothingSaysSo) {
   const AblationSummary summary = SummariseAblation(ablation.study, ablation.result);
   EXPECT_EQ(summary.rows[1].shows, "no evaluation succeeded");
   EXPECT_THAT(summary.rows[2].shows, HasSubstr("no comparison"));
+}
+
+TEST(Ablation, AMeshNoiseThatWasNotMeasuredIsSaidToBeAssumed) {
+  Ablation ablation = MakeAblation();
+  ablation.result.turned.resize(1);
+  EXPECT_THAT(
+      SummariseAblation(ablation.study, ablation.result).rows[2].shows,
+      HasSubstr("D equals that of rival within 2 % (mesh noise not measured; 1 % assumed)"));
+  EXPECT_THAT(AblationText(ablation.study, ablation.result),
+              HasSubstr("Mesh noise: not measured; 1 % of D per point is assumed\n"));
+}
+
+TEST(Ablation, WhatFailedIsNotCounted) {
+  Ablation ablation = MakeAblation();
+  ablation.result.seeds.push_back(ablation.result.seeds.front());
+  ablation.result.seeds.back().searches[1].found.best = -1;
+  ablation.result.turned.emplace_back();
+  const std::string text = AblationText(ablation.study, ablation.result);
+  EXPECT_THAT(text, HasSubstr("Medians of 2 seed(s)"));
+  EXPECT_THAT(text, ContainsRegex("\nrival [^\n]*  1 of 2 seeds\n"));
+  EXPECT_THAT(text, Not(HasSubstr("2 of 2 seeds")));
+  EXPECT_THAT(text, HasSubstr("from 3 turns of S_0"));
 }
 
 TEST(Ablation, DifferenceQuotientsOfBothSignsAreToldApart) {

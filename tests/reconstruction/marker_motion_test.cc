@@ -78,14 +78,15 @@ constexpr char kTipForce[] =
 
 // Follows them with these forces; `more` is added to the experiment.
 FollowedMarkers Follow(const TemporaryFolder& folder, const std::string& more,
-                       const std::string& forces = "{model: none}") {
+                       const std::string& forces = "{model: none}",
+                       const std::string& motion = "{scheme: quasi_static}") {
   SilentProgress progress;
   FollowedMarkers followed;
   followed.study = ReadReconstruction(Config::Parse(
       "schema_version: 1\nname: markers\nrecording: " + folder.Path().string() +
           "\nmesh: {max_volume: 4000 mm^3}\nmaterial: {law: linear, young_modulus: 0.1 MPa, "
-          "poisson_ratio: 0.3}\nmotion: {scheme: quasi_static}\nforces: " +
-          forces + "\n" + more,
+          "poisson_ratio: 0.3}\nmotion: " +
+          motion + "\nforces: " + forces + "\n" + more,
       "markers.yaml"));
   followed.states = LoadFrameStates(followed.study, &progress);
   followed.reference = MakeReferenceBody(followed.study, followed.states.front());
@@ -192,6 +193,38 @@ TEST(MarkerMotion, ForcesAreFittedWhereTheFirstFrameDoesNotShowAMarker) {
   EXPECT_GT(last.force.row(2).sum(), 0);
   // The tip follows its marker, which moves by 2 mm, as far as the marker at rest beside it allows.
   EXPECT_LT(last.residual.col(5).norm(), 0.0018);
+}
+
+TEST(MarkerMotion, AModelThatStaysFarFromItsMarkersIsReported) {
+  const TemporaryFolder folder;
+  WriteMarkers(
+      folder, 6, {0, 0, 0.005}, [](int m) { return m > 0; }, kClamped);
+  // Forces of this scale are too small to move the bar.
+  const FollowedMarkers far =
+      Follow(folder, "fit: {noise: 0.1 mm}\n",
+             "{model: footprint, force_scale: 1e-9 N, region: {half_space: {point: [0.07 m, 0 m, 0 "
+             "m], normal: [1, 0, 0]}}}");
+  ASSERT_EQ(far.motion.frames.size(), 3u);
+  EXPECT_THAT(far.record.warnings,
+              Contains(testing::AllOf(HasSubstr("in 2 of 3 followed frames the model stays far"),
+                                      HasSubstr("in frame 2, half of them are farther than 10 mm"),
+                                      HasSubstr("100 times the noise"))));
+  // Without forces the distance is the result.
+  EXPECT_THAT(Follow(folder, "").record.warnings,
+              testing::Not(Contains(HasSubstr("stays far from the tracked points"))));
+}
+
+TEST(MarkerMotion, ADynamicMotionBeginsAtTheEquilibriumOfTheFirstFrame) {
+  const TemporaryFolder folder;
+  WriteMarkers(
+      folder, 6, {0, 0, 0.001}, [](int m) { return m >= 4; }, kClamped);
+  const FollowedMarkers followed = Follow(folder, "fit: {noise: 0.1 mm}\n", kTipForce, "{}");
+  ASSERT_NE(followed.study.follow.scheme, TimeScheme::kQuasiStatic) << "the default has inertia";
+  ASSERT_EQ(followed.motion.frames.size(), 3u);
+  for (const FollowedFrame& frame : followed.motion.frames)
+    EXPECT_TRUE(frame.solver.usable) << frame.solver.message;
+  EXPECT_LT(followed.motion.frames[0].residual.cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_GT(followed.motion.frames[2].force.row(2).sum(), 0);
 }
 
 TEST(MarkerMotion, TheResidualOfMarkersThatAreTooFewForARegistrationIsNotZero) {

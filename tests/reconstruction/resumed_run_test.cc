@@ -78,7 +78,8 @@ TEST(ResumedRun, ChecksTheNodesOfANewRegionAndReadsNewTrueSurfaces) {
 
   EXPECT_THAT([&] { RunBar(folder, "nodes: [1, 2]"); },
               testing::ThrowsMessage<InputError>(
-                  testing::HasSubstr("so the node numbers of region \"forces\" would shift")));
+                  testing::HasSubstr("region \"forces\" lists nodes by their numbers, but nodes "
+                                     "that no tetrahedron uses are left out")));
 }
 
 }  // namespace

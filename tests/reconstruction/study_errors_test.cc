@@ -7,6 +7,8 @@
 
 #include "core/npy.h"
 #include "experiment/scene.h"
+#include "geometry/mesh_io.h"
+#include "geometry/rounded_box.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_study.h"
 #include "support/silent_progress.h"
@@ -115,17 +117,46 @@ TEST(StudyErrors, TheUnchangedExperimentIsSound) {
   EXPECT_EQ(MessageAfter("seed: 1", "seed: 2"), "nothing was refused");
 }
 
+// The demo's experiment with more entries, on a recording in `folder` of its frames and a given
+// mesh, with more entries, too.
+ReconstructionStudy ReadWithGivenMesh(const TemporaryFolder& folder, const std::string& experiment,
+                                      const std::string& recording) {
+  const std::filesystem::path experiments =
+      std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments";
+  WriteTriMesh(folder / "box.ply", RoundedBox({0.05, 0.015, 0.015}, {0.1, 0.03, 0.03}, 0, 0.01));
+  std::ofstream(folder / "recording.yaml")
+      << "schema_version: 1\nname: bent\nlength_unit: m\ndensity: 1000 kg/m^3\ndata_folder: "
+      << (experiments / "recordings/bend").string()
+      << "\nframes: {kind: points, pattern: frames/points_%03d.ply, count: 16, rate: 20 Hz}\n"
+      << "reference: {from: mesh, file: box.ply}\n"
+      << recording;
+  std::ofstream(folder / "e.yaml") << "use: " << (experiments / "bend.yaml").string()
+                                   << "\noutput: run\nrecording: " << folder.Path().string() << "\n"
+                                   << experiment;
+  return ReadReconstruction(Config::Load(folder / "e.yaml"));
+}
+
+// The last frame is at 0.75 s.
+TEST(StudyErrors, APathMustCoverTheFrames) {
+  const TemporaryFolder folder;
+  const auto read = [&folder](const std::string& end) {
+    std::ofstream(folder / "arm.csv") << "t,x,y,z\n0,0,0,0\n" << end << ",0,0,0.01\n";
+    ReadWithGivenMesh(folder, "",
+                      "gripped: [{sphere: {center: [0, 0, 0], radius: 5 mm}, path: {file: " +
+                          (folder / "arm.csv").string() + ", time: t, x: x, y: y, z: z}}]\n");
+  };
+  EXPECT_THAT([&] { read("0.5"); }, testing::ThrowsMessage<InputError>(HasSubstr(
+                                        "arm.csv covers 0 s to 0.5 s, the frames 0 s to 0.75 s")));
+  EXPECT_NO_THROW(read("0.74999")) << "rounded";
+}
+
 // The experiment names the file, not the recording.
 TEST(StudyErrors, TheNodesWhereForcesActAreAnInputOfTheRun) {
   const TemporaryFolder folder;
-  const std::filesystem::path experiments =
-      std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments";
   std::ofstream(folder / "pushed_nodes.txt") << "1\n3\n";
-  std::ofstream(folder / "e.yaml")
-      << "use: " << (experiments / "bend.yaml").string()
-      << "\noutput: run\nrecording: " << (experiments / "recordings/bend").string()
-      << "\nforces: {region: {nodes_file: " << (folder / "pushed_nodes.txt").string() << "}}\n";
-  const ReconstructionStudy study = ReadReconstruction(Config::Load(folder / "e.yaml"));
+  const ReconstructionStudy study = ReadWithGivenMesh(
+      folder, "forces: {region: {nodes_file: " + (folder / "pushed_nodes.txt").string() + "}}\n",
+      "");
   std::ofstream(folder / "pushed_nodes.txt", std::ios::app) << "\n";
   SilentProgress progress;
   EXPECT_THAT([&] { RunReconstruction(study, &progress); },
