@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -114,8 +115,11 @@ AgreementTest TestAgreement(const std::vector<RecordingRows>& recordings,
       contrast * covariance.topLeftCorner(count * p, count * p) * contrast.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(of_apart);
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(differences, differences);
+  // A smaller variance than the rounding of the largest one is not known, and may be negative.
+  const double least = std::numeric_limits<double>::epsilon() * static_cast<double>(differences) *
+                       eigen.eigenvalues().cwiseAbs().maxCoeff();
   for (Eigen::Index k = 0; k < differences; ++k) {
-    const double spread = eigen.eigenvalues()[k];
+    const double spread = std::max(eigen.eigenvalues()[k], least);
     const Eigen::VectorXd direction = eigen.eigenvectors().col(k);
     if (spread >= 1) continue;
     information += direction * direction.transpose() / spread;

@@ -18,51 +18,6 @@ double RmsBetween(const Eigen::MatrixXd& positions, Eigen::Index a, Eigen::Index
   return Rms(PointLengths(positions.col(a) - positions.col(b)));
 }
 
-StaticSpan MeasureSpan(const Eigen::VectorXd& times, const Eigen::MatrixXd& positions, int first,
-                       int last) {
-  StaticSpan span{first, last};
-  double squares = 0, slopes = 0;
-  int freedom = 0, rows = 0;
-  for (Eigen::Index row = 0; row < positions.rows(); ++row) {
-    double t = 0, x = 0;
-    int count = 0;
-    for (int f = first; f <= last; ++f) {
-      if (std::isnan(positions(row, f))) continue;
-      t += times[f];
-      x += positions(row, f);
-      ++count;
-    }
-    if (count < 3) continue;
-    t /= count;
-    x /= count;
-    double tt = 0, tx = 0;
-    for (int f = first; f <= last; ++f) {
-      if (std::isnan(positions(row, f))) continue;
-      tt += (times[f] - t) * (times[f] - t);
-      tx += (times[f] - t) * (positions(row, f) - x);
-    }
-    const double slope = tx / tt;
-    for (int f = first; f <= last; ++f) {
-      if (std::isnan(positions(row, f))) continue;
-      const double miss = positions(row, f) - x - slope * (times[f] - t);
-      squares += miss * miss;
-    }
-    freedom += count - 2;
-    slopes += slope * slope;
-    ++rows;
-  }
-  if (rows == 0) return span;
-  span.deviation = std::sqrt(squares / freedom);
-  std::vector<Eigen::Index> complete;
-  for (Eigen::Index row = 0; row < positions.rows(); ++row)
-    if (positions.row(row).segment(first, last - first + 1).allFinite()) complete.push_back(row);
-  if (!complete.empty())
-    span.deviation = DeviationAboutTrend(times.segment(first, last - first + 1),
-                                         positions(complete, Eigen::seq(first, last)));
-  span.drift = std::sqrt(3 * slopes / rows);
-  return span;
-}
-
 // The pairs of entries that are both not NaN.
 std::vector<std::pair<double, double>> SeenPairs(const Eigen::MatrixXd& a,
                                                  const Eigen::MatrixXd& b) {
@@ -168,6 +123,53 @@ double WhiteNoise(const Eigen::MatrixXd& positions) {
   const double second = from_differences(Eigen::Vector3d(1, -2, 1));
   const double fourth = from_differences((Eigen::VectorXd(5) << 1, -4, 6, -4, 1).finished());
   return fourth < second ? fourth : second;
+}
+
+StaticSpan MeasureSpan(const Eigen::VectorXd& times, const Eigen::MatrixXd& positions, int first,
+                       int last) {
+  StaticSpan span{first, last, first, last};
+  double squares = 0, slopes = 0, slope_variances = 0;  // the last for noise of deviation 1
+  int freedom = 0, rows = 0;
+  for (Eigen::Index row = 0; row < positions.rows(); ++row) {
+    double t = 0, x = 0;
+    int count = 0;
+    for (int f = first; f <= last; ++f) {
+      if (std::isnan(positions(row, f))) continue;
+      t += times[f];
+      x += positions(row, f);
+      ++count;
+    }
+    if (count < 3) continue;
+    t /= count;
+    x /= count;
+    double tt = 0, tx = 0;
+    for (int f = first; f <= last; ++f) {
+      if (std::isnan(positions(row, f))) continue;
+      tt += (times[f] - t) * (times[f] - t);
+      tx += (times[f] - t) * (positions(row, f) - x);
+    }
+    const double slope = tx / tt;
+    for (int f = first; f <= last; ++f) {
+      if (std::isnan(positions(row, f))) continue;
+      const double miss = positions(row, f) - x - slope * (times[f] - t);
+      squares += miss * miss;
+    }
+    freedom += count - 2;
+    slopes += slope * slope;
+    slope_variances += 1 / tt;
+    ++rows;
+  }
+  if (rows == 0) return span;
+  span.deviation = std::sqrt(squares / freedom);
+  std::vector<Eigen::Index> complete;
+  for (Eigen::Index row = 0; row < positions.rows(); ++row)
+    if (positions.row(row).segment(first, last - first + 1).allFinite()) complete.push_back(row);
+  if (!complete.empty())
+    span.deviation = DeviationAboutTrend(times.segment(first, last - first + 1),
+                                         positions(complete, Eigen::seq(first, last)));
+  span.drift = std::sqrt(3 * slopes / rows);
+  span.noise_drift = span.deviation * std::sqrt(3 * slope_variances / rows);
+  return span;
 }
 
 std::vector<StaticSpan> StaticSpans(const Eigen::VectorXd& times, const Eigen::MatrixXd& positions,
@@ -329,7 +331,9 @@ Repeatability CompareRepeats(const Eigen::VectorXd& first_times, const Eigen::Ma
       const double shift =
           std::clamp(centre + reach * k / kSteps, delay - largest_delay, delay + largest_delay);
       const Repeatability tried = compare_at(shift);
-      if (2 * tried.frames >= start.frames && tried.distance < best.distance) best = tried;
+      // Too few common frames at the nominal delay leave its distance unknown.
+      const bool is_nearer = !std::isnan(tried.distance) && !(tried.distance >= best.distance);
+      if (2 * tried.frames >= start.frames && is_nearer) best = tried;
     }
     reach /= 0.5 * kSteps;
   }

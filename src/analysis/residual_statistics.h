@@ -39,10 +39,16 @@ double WhiteNoise(const Eigen::MatrixXd& positions);
 
 // A range of consecutive frames in which all points are at rest.
 struct StaticSpan {
-  int first = 0, last = 0;      // columns, both inclusive
-  double deviation = kUnknown;  // m, scatter of a coordinate about a line in time: total noise
-  double drift = kUnknown;      // m/s, rms over the points of the slope of that line
+  int first = 0, last = 0;                    // columns, both inclusive
+  int measured_first = 0, measured_last = 0;  // those columns that the next three are of
+  double deviation = kUnknown;    // m, scatter of a coordinate about a line in time: total noise
+  double drift = kUnknown;        // m/s, rms over the points of the slope of that line
+  double noise_drift = kUnknown;  // m/s, the rms slope that uncorrelated noise of `deviation` gives
 };
+// Measures these frames (both inclusive), whether the points rest there or not. A coordinate that
+// is seen in fewer than three of them does not count; without any, the results are NaN.
+StaticSpan MeasureSpan(const Eigen::VectorXd& times, const Eigen::MatrixXd& positions, int first,
+                       int last);
 // Finds the disjoint spans of at least `fewest` (≥ 3) frames in which the rms distance of the
 // points from their positions in the first frame of the span stays within `threshold` (m). At an
 // end that borders on motion, a sixth of the span is excluded from its deviation and drift.

@@ -16,7 +16,7 @@ constexpr int kLags = 8;  // number of lags in the long-run variance
 constexpr size_t kFewestFrames = 8;
 // Noise with a larger lag-one correlation cannot be distinguished from motion.
 constexpr double kLargestCorrelation = 0.9;
-constexpr int kCorrelationSteps = 18;  // that are tried, from 0 up to it
+constexpr int kCorrelationSteps = 18;  // from 0 up to it, both of which are tried
 constexpr double kCorrelationStep = kLargestCorrelation / kCorrelationSteps;
 
 // Applies R^(−1/2) to each column of `values` (frames × columns) of one series. Frames in which the
@@ -101,8 +101,8 @@ double DeviationAboutTrend(const Eigen::VectorXd& times, const Eigen::MatrixXd& 
   const double series = static_cast<double>(rows.rows());
   const double freedom = series * static_cast<double>(count - 2);
   double most = -std::numeric_limits<double>::infinity(), deviation = 0;
-  double correlation = 0;
-  for (int step = 0; step < kCorrelationSteps; ++step, correlation += kCorrelationStep) {
+  for (int step = 0; step <= kCorrelationSteps; ++step) {
+    const double correlation = step * kCorrelationStep;
     Eigen::MatrixXd white = seen;
     double log_determinant = 0;
     for (Eigen::Index f = 1; f < count; ++f) {

@@ -63,12 +63,11 @@ TrackNoise EstimateTrackNoise(const Eigen::VectorXd& times, const Eigen::MatrixX
   const double white = WhiteNoise(positions);
   noise.deviation = white;
   if (!(white > 0)) return noise;
-  double least = std::numeric_limits<double>::infinity();
   for (const StaticSpan& rest :
        StaticSpans(times, positions, kRestThreshold * std::sqrt(6.0) * white, kFewestAtRest))
-    if (!std::isnan(rest.deviation)) least = std::min(least, rest.deviation);
-  noise.is_at_rest = std::isfinite(least);
-  if (noise.is_at_rest) noise.deviation = least;
+    if (!std::isnan(rest.deviation) && !(noise.rest.deviation <= rest.deviation)) noise.rest = rest;
+  noise.is_at_rest = !std::isnan(noise.rest.deviation);
+  if (noise.is_at_rest) noise.deviation = noise.rest.deviation;
   return noise;
 }
 

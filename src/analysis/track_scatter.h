@@ -15,13 +15,14 @@ namespace lacuna {
 struct TrackNoise {
   double deviation = kUnknown;  // m, σ of a coordinate; NaN for fewer than three frames
   bool is_at_rest = false;      // whether it is that of frames in which all points rest
+  StaticSpan rest;              // those frames, if it is
 };
 
 // The noise of a coordinate: the scatter about a straight line while the points rest for at least
 // eight frames (StaticSpans), noise that is correlated over frames included; of several rests the
 // smallest, because a body that is not quite at rest makes it larger. Where the points never rest,
-// the white part of their motion (WhiteNoise), which is an upper bound: a vibration that is fast for
-// the frame rate looks like noise.
+// the white part of their motion (WhiteNoise), which is an upper bound: a vibration that is fast
+// for the frame rate looks like noise.
 TrackNoise EstimateTrackNoise(const Eigen::VectorXd& times, const Eigen::MatrixXd& positions);
 
 // Points that leave their tracks for a frame, as when two markers are exchanged or an image is

@@ -123,6 +123,7 @@ double ChiSquareTail(double statistic, int degrees_of_freedom) {
   CHECK_GE(degrees_of_freedom, 1);
   if (std::isnan(statistic)) return kUnknown;
   if (statistic <= 0) return 1;
+  if (std::isinf(statistic)) return 0;
   const double half = 0.5 * statistic;
   const bool odd = degrees_of_freedom % 2 == 1;
   double tail = odd ? std::erfc(std::sqrt(half)) : 0;

@@ -20,8 +20,15 @@ struct Embedding {
 };
 
 // Locates each point (3 × n, m, finite) in the tetrahedron of the undeformed `mesh` that contains
-// it. The mesh must have a tetrahedron (CHECK). A point outside the mesh gets the nearby
-// tetrahedron whose least barycentric coordinate is largest, so that its weights extrapolate.
+// it, by a search over all bounding boxes; on a common face, edge or node, in the one with the
+// nearest centroid among those with the greatest least coordinate. In an element with curved edges
+// the equation is solved by Newton's method, so that Σ_a N_a(ξ) x_a = x holds there, too. The mesh
+// must have a tetrahedron, and none without volume (CHECK).
+//
+// A point outside the mesh gets the tetrahedron whose least barycentric coordinate is largest among
+// those whose bounding boxes contain it and those with the nearest centroids, so that its weights
+// extrapolate. Where the quadratic maps of curved elements do not reach it, the weights extrapolate
+// linearly from the centroid; Σ_a N_a = 1 and Σ_a N_a x_a = x hold for them, too.
 Embedding Embed(const TetMesh& mesh, const Eigen::Matrix3Xd& points);
 
 // The positions of the points (3 × n, m) for the node positions `nodes` (3 × nodes, m).

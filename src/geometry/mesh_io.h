@@ -17,15 +17,19 @@
 
 namespace lacuna {
 
+// The readers refuse coordinates beyond this, in the file's length unit: products of three of them
+// must not overflow.
+inline constexpr double kFarthestCoordinate = 1e100;
+
 struct TriMeshFile {
   TriMesh mesh;
   std::vector<std::string> notes;
 };
 
-// Reads .ply, .obj, .stl and .off, in text or binary form where the format has both (OFF: text);
-// polygon_soup.h says which variants. Polygons are cut into triangles; vertices of an STL file that
-// are equal are merged. The surface may
-// have any topology; CheckSurface examines it.
+// Reads .ply, .obj, .stl and .off, in text or binary form where the format has both;
+// polygon_soup.h says which variants. Polygons, concave ones too, are cut into triangles
+// (polygon_triangles.h), those with more than 10 000 corners are refused; vertices of an STL file
+// that are equal are merged. The surface may have any topology; CheckSurface examines it.
 TriMeshFile ReadTriMesh(const std::filesystem::path& file);
 
 struct TetMeshFile {
@@ -40,7 +44,9 @@ struct TetMeshFile {
 //   .mesh         MEDIT, text, order 1
 //   .tet          lines "v x y z" and "t i j k l", indices from 0
 //   .txt          the numbers of nodes and tetrahedra, the nodes, the tetrahedra (indices from 0)
-// Tetrahedra with negative volume are reoriented and unused nodes are dropped, each with a note.
+// Tetrahedra with negative volume are reoriented, repetitions of a tetrahedron with the same list
+// of nodes (Gmsh 2.2 writes one for each physical group) and unused nodes are dropped, each with a
+// note.
 // Tetrahedra that have no volume or a repeated node, overlap across a face, or share one face among
 // three are refused, and so are lines behind those that a count announces.
 TetMeshFile ReadTetMesh(const std::filesystem::path& file);

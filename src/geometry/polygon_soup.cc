@@ -129,6 +129,7 @@ PolygonSoup ReadTextStl(const std::filesystem::path& file) {
 
 struct OffHeader {
   long long vertices = 0, faces = 0;
+  bool is_at_vertex = false;  // the number of edges is missing: the first vertex is on this line
 };
 
 long long OffCount(std::string_view word, const char* what, const TextScanner& scanner) {
@@ -159,6 +160,13 @@ OffHeader ReadOffHeader(TextScanner& scanner) {
   header.vertices = OffCount(word, "the number of vertices", scanner);
   header.faces =
       OffCount(scanner.WordAnywhere("the number of faces"), "the number of faces", scanner);
+  // The number of edges is not used, and some programs do not write it. On a line of its own it is
+  // the only number there.
+  const bool has_own_line = scanner.AtLineEnd();
+  if (has_own_line) scanner.ExpectLine("the number of edges");
+  header.is_at_vertex = has_own_line && scanner.WordsLeft() > 1;
+  if (!header.is_at_vertex)
+    OffCount(scanner.Word("the number of edges"), "the number of edges", scanner);
   return header;
 }
 
@@ -189,6 +197,7 @@ class BinaryOff {
                        fmt::format("is truncated or malformed: {} is {}", what, count));
     return count;
   }
+  size_t Left() const { return rest_.size(); }  // bytes
 
  private:
   const std::filesystem::path& file_;
@@ -217,6 +226,9 @@ PolygonSoup ReadBinaryOff(const std::filesystem::path& file, std::string_view nu
     soup.polygons.push_back(std::move(polygon));
     for (uint32_t k = body.Count("the number of colours"); k > 0; --k) body.Bits("a colour");
   }
+  if (body.Left() > 0)
+    throw InputError({file.string()}, fmt::format("{} bytes follow, but the number of faces is {}",
+                                                  body.Left(), faces));
   return soup;
 }
 
@@ -289,7 +301,8 @@ PolygonSoup ReadOff(const std::filesystem::path& file) {
   TextScanner scanner(file, '#');
   const OffHeader header = ReadOffHeader(scanner);
   for (long long v = 0; v < header.vertices; ++v) {
-    scanner.ExpectLine(fmt::format("vertex {} of {}", v + 1, header.vertices));
+    if (v > 0 || !header.is_at_vertex)
+      scanner.ExpectLine(fmt::format("vertex {} of {}", v + 1, header.vertices));
     Eigen::Vector3d point;
     for (double& coordinate : point) {
       if (scanner.AtLineEnd()) scanner.ExpectLine("a coordinate");
@@ -313,6 +326,8 @@ PolygonSoup ReadOff(const std::filesystem::path& file) {
     }
     soup.polygons.push_back(std::move(polygon));
   }
+  if (scanner.NextLine())
+    scanner.Fail(fmt::format("a line follows, but the number of faces is {}", header.faces));
   return soup;
 }
 

@@ -22,6 +22,7 @@ void RefuseUnlessOpenSheet(const TriMesh& sheet) {
   // A boundary is expected in an open sheet, and intersections will show as inverted prisms.
   report.boundary_loops.clear();
   report.inside_out_components.clear();
+  report.flat_components.clear();
   report.self_intersections_tested = true;
   const std::string faults = DescribeFaults(report);
   if (!faults.empty()) throw InputError("the sheet to thicken has " + faults);

@@ -173,7 +173,8 @@ class Examination {
   void Components() {
     const Vector3d origin = report_.triangles > 0 ? BoundingBox(mesh_.vertices).center().eval()
                                                   : Vector3d::Zero().eval();
-    std::vector<double> volume(report_.triangles, 0);
+    const double reach = 0.5 * BoundingBoxDiagonal(mesh_.vertices);
+    std::vector<double> volume(report_.triangles, 0), area(report_.triangles, 0);
     std::vector<Vector3d> centre(report_.triangles, Vector3d::Zero());
     std::vector<int> size(report_.triangles, 0);
     std::vector<bool> is_open(report_.triangles, false);
@@ -183,6 +184,7 @@ class Examination {
       const Vector3d b = Vertex(mesh_.triangles(1, t)) - origin;
       const Vector3d c = Vertex(mesh_.triangles(2, t)) - origin;
       volume[component] += a.dot(b.cross(c)) / 6;
+      area[component] += 0.5 * (b - a).cross(c - a).norm();
       centre[component] += (a + b + c) / 3 + origin;
       ++size[component];
     }
@@ -190,7 +192,12 @@ class Examination {
     for (int t = 0; t < report_.triangles; ++t) {
       if (size[t] == 0) continue;
       ++report_.components;
-      if (!is_open[t] && volume[t] <= 0) {
+      if (is_open[t]) continue;
+      // A shift of the triangles by the rounding of their coordinates changes the volume by this.
+      const double rounding = 8 * std::numeric_limits<double>::epsilon() * reach * area[t];
+      if (std::abs(volume[t]) <= rounding) {
+        report_.flat_components.push_back(centre[t] / size[t]);
+      } else if (volume[t] < 0) {
         report_.inside_out_components.push_back(centre[t] / size[t]);
       }
     }
@@ -244,6 +251,7 @@ std::string DescribeFaults(const SurfaceReport& report) {
   DescribePlaces("triangle without area", report.degenerate_triangles, faults);
   if (report.misoriented_edges.empty()) {
     DescribePlaces("component turned inside out", report.inside_out_components, faults);
+    DescribePlaces("closed component without volume", report.flat_components, faults);
   }
   Places crossings;
   for (const SelfIntersection& crossing : report.self_intersections) {

@@ -33,6 +33,7 @@ struct SurfaceReport {
   Places misoriented_edges;                  // edges whose two triangles have opposite orientations
   Places degenerate_triangles;               // triangles with a repeated vertex or no area
   Places inside_out_components;              // closed components of negative volume
+  Places flat_components;                    // closed components without volume, up to rounding
   bool self_intersections_tested = false;
   std::vector<SelfIntersection> self_intersections;
   double area = 0;    // m²
@@ -43,7 +44,9 @@ struct SurfaceReport {
   bool IsClosed() const { return triangles > 0 && boundary_loops.empty(); }
   bool IsManifold() const { return nonmanifold_edges.empty() && nonmanifold_vertices.empty(); }
   bool IsOriented() const { return misoriented_edges.empty(); }
-  bool IsOutward() const { return IsClosed() && IsOriented() && inside_out_components.empty(); }
+  bool IsOutward() const {
+    return IsClosed() && IsOriented() && inside_out_components.empty() && flat_components.empty();
+  }
   bool IsFreeOfIntersections() const {
     return self_intersections_tested && self_intersections.empty();
   }

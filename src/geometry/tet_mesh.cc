@@ -2,10 +2,12 @@
 
 #include <glog/logging.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -169,16 +171,58 @@ TriMesh BoundaryAt(const BoundarySurface& boundary, const Eigen::Matrix3Xd& node
   return {nodes(Eigen::all, boundary.node), boundary.surface.triangles};
 }
 
+bool HasStraightEdges(const TetMesh& mesh, Eigen::Index tet) {
+  if (mesh.Order() == 1) return true;
+  constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
+  constexpr double kStraight = 1e-10;  // relative to the length of the edge
+  for (size_t k = 0; k < kTetEdges.size(); ++k) {
+    const Eigen::Vector3d a = mesh.nodes.col(mesh.tets(kTetEdges[k][0], tet));
+    const Eigen::Vector3d b = mesh.nodes.col(mesh.tets(kTetEdges[k][1], tet));
+    const Eigen::Vector3d midpoint = mesh.nodes.col(mesh.tets(4 + static_cast<int>(k), tet));
+    const double largest = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+    const double allowed = kStraight * (b - a).norm() + kRounding * largest;
+    if (!((midpoint - 0.5 * (a + b)).norm() <= allowed)) return false;
+  }
+  return true;
+}
+
+double VolumeOfCurvature(const TetMesh& mesh) {
+  if (mesh.Order() == 1) return 0;
+  // The determinant is of degree 3. The rule with the centroid and four points is exact for it
+  // (Hammer & Stroud 1956).
+  Eigen::Matrix<double, 4, 5> points = Eigen::Matrix<double, 4, 5>::Constant(1.0 / 6);
+  points.leftCols<4>().diagonal().setConstant(0.5);
+  points.col(4).setConstant(0.25);
+  const Eigen::Matrix<double, 4, 3> along_edges{{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const Eigen::VectorXd of_corners = TetVolumes(mesh);
+  double sum = 0;
+  for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
+    if (HasStraightEdges(mesh, e)) continue;
+    const Eigen::Matrix3Xd nodes = mesh.nodes(Eigen::all, mesh.tets.col(e));
+    double volume = 0;
+    for (int p = 0; p < 5; ++p) {
+      const Eigen::Matrix3d jacobian = nodes * (ShapeDerivatives(2, points.col(p)) * along_edges);
+      volume += (p < 4 ? 0.45 : -0.8) * jacobian.determinant() / 6;
+    }
+    sum += volume - of_corners(e);
+  }
+  return sum;
+}
+
 Eigen::Index FindFlatTet(const TetMesh& mesh) {
   constexpr double kFlat = 1e-14;  // relative to the cubed edge length
+  constexpr double kRounding = 2 * std::numeric_limits<double>::epsilon();
   const Eigen::VectorXd volumes = TetVolumes(mesh);
   for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
     double longest = 0;
+    double largest = mesh.nodes.col(mesh.tets(0, e)).cwiseAbs().maxCoeff();
     for (int k = 1; k < 4; ++k) {
-      longest = std::max(
-          longest, (mesh.nodes.col(mesh.tets(k, e)) - mesh.nodes.col(mesh.tets(0, e))).norm());
+      const Eigen::Vector3d node = mesh.nodes.col(mesh.tets(k, e));
+      longest = std::max(longest, (node - mesh.nodes.col(mesh.tets(0, e))).norm());
+      largest = std::max(largest, node.cwiseAbs().maxCoeff());
     }
-    if (std::abs(volumes(e)) <= kFlat * std::pow(longest, 3)) return e;
+    const double square = longest * longest;
+    if (std::abs(volumes(e)) <= kFlat * square * longest + kRounding * largest * square) return e;
   }
   return -1;
 }

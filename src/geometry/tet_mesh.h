@@ -23,8 +23,17 @@ struct TetMesh {
 // The signed volume (m³) of each tetrahedron, computed from its corners.
 Eigen::VectorXd TetVolumes(const TetMesh& mesh);
 
-// The first tetrahedron whose volume is a rounding error of its coordinates; −1 if there is none.
-// ReadTetMesh refuses such a mesh.
+// Whether each midpoint of tetrahedron `tet` lies halfway between its corners, up to rounding, so
+// that barycentric coordinates are those of the corners; true in a linear mesh.
+bool HasStraightEdges(const TetMesh& mesh, Eigen::Index tet);
+
+// The signed volume (m³) that the tetrahedra fill in addition to TetVolumes because their edges are
+// curved, Σ_e ∫ det(∂x/∂ξ) dξ − V_e; 0 if all edges are straight.
+double VolumeOfCurvature(const TetMesh& mesh);
+
+// The first tetrahedron whose corners lie in one plane up to the rounding of its volume or of its
+// coordinates, |V| ≤ 1e-14 h³ + 2 ε c h² with the longest edge h from its first corner and its
+// largest coordinate c; −1 if there is none. ReadTetMesh refuses such a mesh.
 Eigen::Index FindFlatTet(const TetMesh& mesh);
 
 // The same mesh with an additional node at the midpoint of each edge; corner nodes keep their

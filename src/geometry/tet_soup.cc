@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "core/error.h"
@@ -13,6 +14,33 @@ namespace {
 
 [[noreturn]] void Fail(const std::filesystem::path& file, int line, const std::string& message) {
   throw InputError({file.string(), line}, message);
+}
+
+// Removes the tetrahedra that list the same nodes as an earlier one in the same order, and returns
+// their number.
+size_t DropRepetitions(TetSoup& soup) {
+  const size_t count = soup.tets.size();
+  const auto nodes = [&](size_t e) { return std::tie(soup.sizes[e], soup.tets[e]); };
+  std::vector<size_t> order(count);
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::sort(order.begin(), order.end(), [&](size_t e, size_t other) {
+    return nodes(e) != nodes(other) ? nodes(e) < nodes(other) : e < other;
+  });
+  std::vector<char> is_repeated(count, 0);
+  for (size_t k = 1; k < count; ++k)
+    if (nodes(order[k]) == nodes(order[k - 1])) is_repeated[order[k]] = 1;
+  size_t kept = 0;
+  for (size_t e = 0; e < count; ++e) {
+    if (is_repeated[e]) continue;
+    soup.tets[kept] = soup.tets[e];
+    soup.sizes[kept] = soup.sizes[e];
+    soup.lines[kept] = soup.lines[e];
+    ++kept;
+  }
+  soup.tets.resize(kept);
+  soup.sizes.resize(kept);
+  soup.lines.resize(kept);
+  return count - kept;
 }
 
 Eigen::MatrixXi UniformTets(const TetSoup& soup, const std::filesystem::path& file) {
@@ -38,12 +66,11 @@ Eigen::MatrixXi UniformTets(const TetSoup& soup, const std::filesystem::path& fi
 // Reorients the tetrahedra of negative volume and returns their number; refuses flat ones, and
 // those that lie so far out that a product of three distances may overflow.
 Eigen::Index TurnPositive(const TetSoup& soup, const std::filesystem::path& file, TetMesh& mesh) {
-  constexpr double kFarthest = 1e100;  // in the file's length unit
   for (Eigen::Index e = 0; e < mesh.TetCount(); ++e)
     for (const int node : mesh.tets.col(e))
-      if (mesh.nodes.col(node).cwiseAbs().maxCoeff() > kFarthest)
+      if (mesh.nodes.col(node).cwiseAbs().maxCoeff() > kFarthestCoordinate)
         Fail(file, soup.lines[e],
-             fmt::format("tetrahedron {} has a coordinate beyond {}", e + 1, kFarthest));
+             fmt::format("tetrahedron {} has a coordinate beyond {}", e + 1, kFarthestCoordinate));
   if (const Eigen::Index flat = FindFlatTet(mesh); flat >= 0)
     Fail(file, soup.lines[flat], fmt::format("tetrahedron {} has no volume", flat + 1));
   const Eigen::VectorXd volumes = TetVolumes(mesh);
@@ -131,8 +158,11 @@ void TetSoup::Add(std::span<const int> tet, int line) {
   lines.push_back(line);
 }
 
-TetMeshFile FinishTetMesh(const TetSoup& soup, const std::filesystem::path& file) {
+TetMeshFile FinishTetMesh(TetSoup soup, const std::filesystem::path& file) {
   TetMeshFile result;
+  if (const size_t repeated = DropRepetitions(soup); repeated > 0)
+    result.notes.push_back(
+        fmt::format("dropped {} tetrahedra that repeat an earlier one", repeated));
   TetMesh& mesh = result.mesh;
   mesh.tets = UniformTets(soup, file);
   mesh.nodes.resize(3, soup.nodes.size());

@@ -22,9 +22,9 @@ struct TetSoup {
   void Add(std::span<const int> tet, int line);
 };
 
-// Checks the tetrahedra, reorients those of negative volume and removes unused nodes, as described
-// for ReadTetMesh. Throws InputError with `file` and line for an invalid mesh.
-TetMeshFile FinishTetMesh(const TetSoup& soup, const std::filesystem::path& file);
+// Checks the tetrahedra, removes repetitions and unused nodes, and reorients tetrahedra of negative
+// volume, as described for ReadTetMesh. Throws InputError with `file` and line for an invalid mesh.
+TetMeshFile FinishTetMesh(TetSoup soup, const std::filesystem::path& file);
 
 }  // namespace lacuna
 

@@ -54,6 +54,15 @@ void TextScanner::ExpectLine(const std::string& what) {
 
 bool TextScanner::AtLineEnd() { return rest_.find_first_not_of(kBlank) == std::string_view::npos; }
 
+int TextScanner::WordsLeft() const {
+  int count = 0;
+  for (size_t at = rest_.find_first_not_of(kBlank); at != std::string_view::npos; ++count) {
+    at = rest_.find_first_of(kBlank, at);
+    if (at != std::string_view::npos) at = rest_.find_first_not_of(kBlank, at);
+  }
+  return count;
+}
+
 std::string_view TextScanner::Word(const char* what) {
   if (AtLineEnd()) Fail(fmt::format("the line ends where {} should follow", what));
   rest_.remove_prefix(rest_.find_first_not_of(kBlank));

@@ -30,6 +30,7 @@ class TextScanner {
   long long Integer(const char* what);
   Eigen::Vector3d Point(const char* what);
   bool AtLineEnd();
+  int WordsLeft() const;  // on the current line
 
   // Like Word, but moves to the next line if the current one has ended.
   std::string_view WordAnywhere(const char* what);

@@ -2,6 +2,7 @@
 #include <CGAL/Simple_cartesian.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <bit>
 #include <fstream>
 #include <map>
@@ -14,6 +15,7 @@
 #include "geometry/mesh_io.h"
 #include "geometry/ply_header.h"
 #include "geometry/polygon_soup.h"
+#include "geometry/polygon_triangles.h"
 #include "geometry/text_scanner.h"
 
 namespace lacuna {
@@ -23,12 +25,17 @@ PolygonSoup ReadPly(const std::filesystem::path& file) {
   std::string content = ReadWholeFile(file);
   const PlyHeader header = ReadPlyHeader(file, content);
   CheckPlyBody(file, content, header);
-  if (const PlyElement* vertices = header.Find("vertex"))
-    for (const PlyProperty& property : vertices->properties)
-      if ((property.name == "x" || property.name == "y" || property.name == "z") &&
-          (property.is_list || !property.is_floating))
+  if (const PlyElement* vertices = header.Find("vertex")) {
+    for (const char* name : {"x", "y", "z"}) {
+      const PlyProperty* coordinate = FindProperty(*vertices, name);
+      if (coordinate == nullptr)
         throw InputError({file.string()},
-                         fmt::format("holds \"{}\" not as floating-point numbers", property.name));
+                         fmt::format("its vertices have no property \"{}\"", name));
+      if (coordinate->is_list || !coordinate->is_floating)
+        throw InputError({file.string()},
+                         fmt::format("holds \"{}\" not as floating-point numbers", name));
+    }
+  }
   std::istringstream stream(std::move(content));
   std::vector<CGAL::Simple_cartesian<double>::Point_3> points;
   PolygonSoup soup;
@@ -64,21 +71,28 @@ PolygonSoup ReadSoup(const std::filesystem::path& file) {
   return soup;
 }
 
+// Products of three distances between coordinates beyond the limit could overflow.
 Eigen::Matrix3Xd FiniteVertices(const std::filesystem::path& file, const PolygonSoup& soup) {
   Eigen::Matrix3Xd vertices(3, soup.points.size());
   for (size_t v = 0; v < soup.points.size(); ++v) {
     vertices.col(v) = soup.points[v];
-    if (!vertices.col(v).allFinite()) {
-      throw InputError({file.string()},
-                       fmt::format("vertex {} of {} is not finite", v + 1, soup.points.size()));
-    }
+    if (vertices.col(v).allFinite() && vertices.col(v).cwiseAbs().maxCoeff() <= kFarthestCoordinate)
+      continue;
+    throw InputError({file.string()}, fmt::format("vertex {} of {} {}", v + 1, soup.points.size(),
+                                                  vertices.col(v).allFinite()
+                                                      ? fmt::format("has a coordinate beyond {}",
+                                                                    kFarthestCoordinate)
+                                                      : "is not finite"));
   }
   return vertices;
 }
 
-// Cuts each polygon into a fan of triangles around its first corner.
-Eigen::Matrix3Xi Triangles(const std::filesystem::path& file, const PolygonSoup& soup,
-                           std::vector<std::string>& notes) {
+// Cutting a polygon takes a time that grows with the square of the number of its corners.
+constexpr size_t kMostCorners = 10'000;
+
+// Cuts each polygon into triangles.
+Eigen::Matrix3Xi TrianglesOf(const std::filesystem::path& file, const PolygonSoup& soup,
+                             std::vector<std::string>& notes) {
   std::vector<int> corners;
   size_t larger = 0;
   for (size_t f = 0; f < soup.polygons.size(); ++f) {
@@ -95,11 +109,12 @@ Eigen::Matrix3Xi Triangles(const std::filesystem::path& file, const PolygonSoup&
       }
     }
     larger += polygon.size() > 3;
-    for (size_t k = 1; k + 1 < polygon.size(); ++k) {
-      for (const size_t v : {polygon[0], polygon[k], polygon[k + 1]}) {
-        corners.push_back(static_cast<int>(v));
-      }
-    }
+    if (polygon.size() > kMostCorners)
+      fail(fmt::format("has {} corners; at most {} are read", polygon.size(), kMostCorners));
+    Eigen::Matrix3Xd places(3, polygon.size());
+    for (size_t k = 0; k < polygon.size(); ++k) places.col(k) = soup.points[polygon[k]];
+    for (const std::array<int, 3>& triangle : CutPolygon(places))
+      for (const int k : triangle) corners.push_back(static_cast<int>(polygon[k]));
   }
   if (larger > 0) notes.push_back(fmt::format("cut {} polygons into triangles", larger));
   return Eigen::Map<const Eigen::Matrix3Xi>(corners.data(), 3, corners.size() / 3);
@@ -118,7 +133,7 @@ TriMeshFile ReadTriMesh(const std::filesystem::path& file) {
   TriMeshFile result;
   result.notes = soup.notes;
   result.mesh.vertices = FiniteVertices(file, soup);
-  result.mesh.triangles = Triangles(file, soup, result.notes);
+  result.mesh.triangles = TrianglesOf(file, soup, result.notes);
   return result;
 }
 

@@ -95,7 +95,7 @@ TetQuality MeasureTets(const TetMesh& mesh, double radius_edge_bound, double vol
         radius_edge_bound > 0 && shape.radius_edge_ratio > radius_edge_bound * kSlack;
     quality.above_volume += volume_bound > 0 && shape.volume > volume_bound * kSlack;
   }
-  quality.total_volume = quality.volume.mean;
+  quality.total_volume = quality.volume.mean + VolumeOfCurvature(mesh);
   for (Spread* spread :
        {&quality.volume, &quality.edge_length, &quality.radius_edge_ratio, &quality.aspect_ratio}) {
     spread->mean /= static_cast<double>(quality.tets);

@@ -13,10 +13,10 @@ struct Spread {
   double min = 0, mean = 0, max = 0;
 };
 
-// All shape measures refer to the four corners, also for quadratic tetrahedra.
+// All measures but the total volume refer to the four corners, also for quadratic tetrahedra.
 struct TetQuality {
   Eigen::Index nodes = 0, tets = 0;
-  double total_volume = 0;        // m³
+  double total_volume = 0;        // m³, with the curved edges of quadratic tetrahedra
   Spread volume;                  // m³
   Spread edge_length;             // m; an edge counts once for each of its tetrahedra
   Spread radius_edge_ratio;       // circumradius over shortest edge; √6/4 ≈ 0.612 if regular

@@ -201,6 +201,8 @@ void FailByCode(int code, MeshResult& result) {
 
 MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
   CHECK(options.radius_edge_ratio > 1 && options.max_volume >= 0);
+  CHECK(options.min_dihedral_angle >= 0 && options.min_dihedral_angle < std::numbers::pi / 2);
+  CHECK_GE(options.max_added_nodes, 0);
   CHECK(options.order == 1 || options.order == 2);
   MeshResult result;
   result.surface_report = CheckSurface(surface);

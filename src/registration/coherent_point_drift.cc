@@ -124,8 +124,6 @@ CpdResult MakeResult(const PointCloud& source, const NormalisedClouds& clouds,
                                      options.max_iterations);
   result.iterations = drift.iterations;
   result.rank = basis.Rank();
-  result.sigma = clouds.scale * drift.sigma;
-  result.noise = clouds.scale * drift.noise;
   result.outlier_weight = drift.outlier_weight;
   const double prior_variance =
       drift.prior_scale / (options.lambda * static_cast<double>(clouds.target.cols()));
@@ -151,11 +149,24 @@ CpdResult MakeResult(const PointCloud& source, const NormalisedClouds& clouds,
 CpdResult RegisterNonrigid(const PointCloud& source, const PointCloud& target,
                            const CpdOptions& options, const DisplacementField* warm_start) {
   CHECK(options.kernels != nullptr);
+  CHECK_GT(options.beta, 0.0);
+  CHECK_GE(options.fine_variance, 0.0);
+  CHECK(options.fine_variance == 0.0 || options.fine_beta > 0.0);
   CHECK_GT(options.lambda, 0.0);
+  CHECK_GE(options.rigidity, 0.0);
+  CHECK_GT(options.tangential_weight, 0.0);
+  CHECK_LE(options.tangential_weight, 1.0);
   CHECK_GE(options.outlier_weight, CpdOptions::kFewestOutliers);
   CHECK_LE(options.outlier_weight, CpdOptions::kMostOutliers);
+  CHECK_GE(options.initial_sigma, 0.0);
+  CHECK_GT(options.sigma_floor, 0.0);
+  CHECK_GT(options.cutoff, 0.0);
   CHECK_GT(options.points_per_function, 0);
   CHECK_GE(options.max_rank, 4);
+  CHECK_GT(options.rank_tolerance, 0.0);
+  CHECK_LE(options.rank_tolerance, 1.0);
+  CHECK_GE(options.tolerance, 0.0);
+  CHECK_GE(options.max_iterations, 1);
   if (const auto refusal = Refusal("source", source)) return *refusal;
   if (const auto refusal = Refusal("target", target)) return *refusal;
   const NormalisedClouds clouds = Normalise(source, target, *options.kernels);

@@ -48,8 +48,6 @@ struct CpdResult {
   Eigen::Matrix3Xd displaced;  // 3 × M, m: the source points, displaced by the field
   Eigen::VectorXd weight;  // M: number of target points assigned to each source point, Σ_n p_mn
   Eigen::VectorXd inlier;  // N: probability that each target point belongs to the source
-  double sigma = 0.0;      // m: final standard deviation σ of the Gaussians
-  double noise = 0.0;      // m: rms distance of the target points along the normals
   // Fraction of target points that belong to no source point, CpdOptions::kFewestOutliers …
   // kMostOutliers.
   double outlier_weight = 0.0;

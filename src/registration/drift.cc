@@ -192,7 +192,6 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
         std::sqrt((moved - displacement).squaredNorm() / static_cast<double>(rest.cols()));
     displacement = moved;
 
-    drift->noise = std::sqrt(NormalVariance(drift->posterior, sigma));
     drift->sigma =
         std::max(level.floor, NextSigma(drift->posterior, sigma, options.tangential_weight));
     if (options.estimate_outlier_weight) {

@@ -16,7 +16,6 @@ struct Drift {
   Eigen::Matrix3Xd coefficients;  // 3 × K
   double sigma = 0.0;
   double outlier_weight = 0.0;
-  double noise = 0.0;       // rms distance of the target points along the normals
   int iterations = 0;       // total over all levels so far
   bool converged = false;   // whether the latest level converged
   bool has_overlap = true;  // false if almost no target point belongs to the source

@@ -66,17 +66,6 @@ Evaluator::Evaluator(const SearchProblem& problem, const SearchControl& control,
   }
 }
 
-SearchStatus Evaluator::StopReason() const {
-  if (evaluation_count() >= control_.max_evaluations) return SearchStatus::kEvaluations;
-  if (log_ && evaluation_count() < static_cast<int>(log_->steps().size())) {
-    return SearchStatus::kNotRun;  // reading from the log takes almost no time
-  }
-  if (control_.interrupted && control_.interrupted()) return SearchStatus::kInterrupted;
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
-  if (elapsed.count() >= control_.max_seconds) return SearchStatus::kTime;
-  return SearchStatus::kNotRun;
-}
-
 SearchStep Evaluator::Evaluate(Eigen::VectorXd x) {
   const int index = evaluation_count();
   if (log_ && index < static_cast<int>(log_->steps().size())) {
@@ -127,8 +116,10 @@ const Evaluation* Evaluator::At(const Eigen::VectorXd& free_x) {
   const std::vector<double> key(x.data(), x.data() + x.size());
   const auto known = known_.find(key);
   if (known != known_.end()) return outcomes_[known->second].get();
-  status_ = StopReason();
-  if (stopped()) return nullptr;
+  if (evaluation_count() >= control_.max_evaluations) {
+    status_ = SearchStatus::kEvaluations;
+    return nullptr;
+  }
   SearchStep step = Evaluate(std::move(x));
   if (!step.outcome.value) ++result_.failures;
   known_.emplace(key, evaluation_count());
@@ -142,8 +133,9 @@ const Evaluation* Evaluator::At(const Eigen::VectorXd& free_x) {
 Eigen::VectorXd Evaluator::PointOf(int index) const { return result_.trace[index].x(free_); }
 
 SearchResult Evaluator::Finish(SearchStatus status, const std::string& message) {
-  result_.status = stopped() ? status_ : status;
+  result_.status = status;
   if (evaluation_count() > 0 && !result_.best) result_.status = SearchStatus::kNoValue;
+  if (stopped()) result_.status = status_;
   result_.message = message.empty() ? ToString(result_.status) : message;
   std::string bits;
   for (const SearchStep& step : result_.trace) {

@@ -3,7 +3,6 @@
 #ifndef LACUNA_SEARCH_EVALUATOR_H_
 #define LACUNA_SEARCH_EVALUATOR_H_
 
-#include <chrono>
 #include <map>
 #include <memory>
 #include <string>
@@ -54,7 +53,6 @@ class Evaluator {
 
  private:
   Eigen::VectorXd Whole(const Eigen::VectorXd& free_x) const;  // adds the fixed variables
-  SearchStatus StopReason() const;
   SearchStep Evaluate(Eigen::VectorXd x);
   bool IsBetter(const Evaluation& outcome) const;
 
@@ -67,7 +65,6 @@ class Evaluator {
   std::vector<std::unique_ptr<Evaluation>> outcomes_;
   SearchStatus status_ = SearchStatus::kNotRun;
   SearchResult result_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace lacuna

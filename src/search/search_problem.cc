@@ -12,10 +12,6 @@ const char* ToString(SearchStatus status) {
       return "converged";
     case SearchStatus::kEvaluations:
       return "evaluation limit reached";
-    case SearchStatus::kTime:
-      return "time limit reached";
-    case SearchStatus::kInterrupted:
-      return "interrupted";
     case SearchStatus::kRounding:
       return "stopped by rounding errors";
     case SearchStatus::kNoValue:

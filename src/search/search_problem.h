@@ -11,7 +11,6 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,11 +41,6 @@ struct SearchProblem {
 // The stopping rules and the log of a search.
 struct SearchControl {
   int max_evaluations = 500;  // distinct points, including those read from the log
-  // Limit on the wall time, s, checked before each evaluation. A search that this limit has stopped
-  // resumes from its log when it is called again.
-  double max_seconds = std::numeric_limits<double>::infinity();
-  // Called before each evaluation if set; the search stops when it returns true.
-  std::function<bool()> interrupted;
   // The largest violation of a constraint at which a point still counts as feasible.
   double feasibility_tolerance = 1e-6;
   std::filesystem::path log;  // the file of the evaluation log (evaluation_log.h); none if empty
@@ -57,8 +51,6 @@ enum class SearchStatus {
   kNotRun,
   kConverged,       // the final resolution was reached
   kEvaluations,     // max_evaluations was reached
-  kTime,            // max_seconds was reached
-  kInterrupted,     // control.interrupted returned true
   kRounding,        // steps became too small for double precision
   kNoValue,         // no evaluation near the start succeeded
   kAllFixed,        // no variable is free; the only point has been evaluated

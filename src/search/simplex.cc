@@ -61,10 +61,11 @@ std::optional<Simplex> Simplex::Around(const VectorXd& start, double step, Evalu
     const VectorXd base = simplex.Vertex(n);
     const double along = AxisStep(base, j, step, *evaluator);
     const Evaluation* outcome = nullptr;
-    VectorXd x;
+    VectorXd x;  // the neighbour that was tried last
     for (const double factor : {1.0, -1.0, 0.5, -0.5}) {
-      x = Within(base + factor * along * VectorXd::Unit(n, j), *evaluator);
-      if (x == base) continue;
+      const VectorXd neighbour = Within(base + factor * along * VectorXd::Unit(n, j), *evaluator);
+      if (neighbour == base) continue;
+      x = neighbour;
       outcome = evaluator->At(x);
       if (outcome == nullptr) return std::nullopt;
       if (outcome->value) break;

@@ -79,6 +79,7 @@ void Conclude(const SurfaceOptions& options, Surface& surface) {
   if (!options.closed) {
     judged.boundary_loops.clear();
     judged.inside_out_components.clear();
+    judged.flat_components.clear();
   }
   surface.message = DescribeFaults(judged);
   surface.status = surface.message.empty() ? SurfaceStatus::kUsable : SurfaceStatus::kFaulty;

@@ -24,6 +24,7 @@ void RefuseUnlessManifold(const TriMesh& mesh) {
   if (report.IsManifold() && report.IsOriented() && report.degenerate_triangles.empty()) return;
   report.boundary_loops.clear();
   report.inside_out_components.clear();
+  report.flat_components.clear();
   report.self_intersections_tested = true;
   throw InputError("the surface to remesh has " + DescribeFaults(report));
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "analysis/whiteness.h"
@@ -63,6 +64,8 @@ TEST(ResidualStatistics, ChiSquareTailsAgreeWithTables) {
   // 0.01.
   EXPECT_NEAR(ChiSquareTail(5000, 5000), 0.5, 0.01);
   EXPECT_EQ(ChiSquareTail(0, 3), 1);
+  for (const int freedom : {1, 2, 3})
+    EXPECT_EQ(ChiSquareTail(std::numeric_limits<double>::infinity(), freedom), 0);
 }
 
 TEST(ResidualStatistics, WhiteNoiseIsRejectedAtTheNominalRate) {
@@ -190,6 +193,9 @@ TEST(ResidualStatistics, StaticSpansAreFoundWithTheirNoiseAndDrift) {
   // A slope over one second with 100 frames has the standard deviation σ √12 / (√100 s) = 3.5e-6
   // per coordinate, and noise alone gives a drift of √3 times as much.
   EXPECT_NEAR(rests[1].drift, std::hypot(kDrift, 6e-6), 4e-6);
+  // As above, but the margin at the border with the motion shortens the second rest.
+  EXPECT_NEAR(rests[1].noise_drift, std::sqrt(3.0) * 3.5e-6 * std::pow(0.84, -1.5), 1e-6);
+  EXPECT_LT(rests[0].drift, 2 * rests[0].noise_drift);
 }
 
 TEST(ResidualStatistics, SpeedAndDisplacementOfAUniformMotion) {
@@ -262,6 +268,21 @@ TEST(ResidualStatistics, RepeatsAreAlignedAndTheirDistanceIsTheNoise) {
   EXPECT_LT(repeats.distance, 1.2 * std::sqrt(6.0) * kNoise);
   EXPECT_EQ(CompareRepeats(first_times, first, second_times.array() + 100, second, 0, 0.1).frames,
             0);
+}
+
+// Few frames are common to both at the nominal delay, which leaves the distance there unknown.
+TEST(ResidualStatistics, RepeatsAreAlignedFromADelayWithHardlyAnyOverlap) {
+  const auto motion = [](double t) { return 0.01 * std::sin(9 * t); };
+  const Eigen::VectorXd times = Times(100, 0.01);
+  Eigen::MatrixXd first = WhiteSeries(6, 100, 12, 1e-5), second = WhiteSeries(6, 100, 13, 1e-5);
+  for (int f = 0; f < 100; ++f) {
+    first.col(f).array() += motion(times[f]);
+    second.col(f).array() += motion(times[f] - 0.5);
+  }
+  // At a delay of 0.95 s, the last frames of the second recording meet the first five of the first.
+  const Repeatability repeats = CompareRepeats(times, first, times, second, 0.95, 0.6);
+  EXPECT_NEAR(repeats.delay, 0.5, 1e-3);
+  EXPECT_LT(repeats.distance, 1e-4);
 }
 
 }  // namespace

@@ -121,5 +121,21 @@ TEST(SeriesNoise, DeviationOfAShortRecordAccountsForCorrelation) {
   EXPECT_EQ(DeviationAboutTrend(times, Eigen::MatrixXd::Zero(2, kFrames)), 0);
 }
 
+// Slower noise than the largest correlation that is tried, 0.9, gives 0.54 of the deviation with
+// that one and 0.44 with the next smaller one; the random error is below 1 %.
+TEST(SeriesNoise, DeviationTriesTheLargestCorrelation) {
+  constexpr double kMemory = 0.97;
+  constexpr int kFrames = 13, kSeries = 2000;
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd rows(kSeries, kFrames);
+  for (int s = 0; s < kSeries; ++s) {
+    rows(s, 0) = normal(random);
+    for (int f = 1; f < kFrames; ++f)
+      rows(s, f) = kMemory * rows(s, f - 1) + std::sqrt(1 - kMemory * kMemory) * normal(random);
+  }
+  EXPECT_NEAR(DeviationAboutTrend(Eigen::VectorXd::LinSpaced(kFrames, 0, 0.12), rows), 0.54, 0.03);
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -52,6 +52,11 @@ constexpr char kStl[] =
     "endloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 1 0.5\n"
     "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
 
+std::string Capitals(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
 struct TextFile {
   const char* name;
   const char* content;
@@ -133,6 +138,52 @@ TEST(ReadTriMesh, CutsPolygonsIntoTrianglesWithANote) {
   EXPECT_EQ(result.mesh.triangles.cols(), 2);
   EXPECT_DOUBLE_EQ(TriangleAreas(result.mesh).sum(), 1);
   EXPECT_THAT(result.notes, ElementsAre(HasSubstr("1 polygons")));
+}
+
+// The end of the letter L, from every corner: a fan around most of them would leave the polygon.
+TEST(ReadTriMesh, CutsConcavePolygonsIntoTrianglesThatDoNotOverlap) {
+  const TemporaryFolder folder;
+  std::string vertices;
+  for (const char* z : {"0", "1"})
+    for (const char* place : {"0 0", "2 0", "2 1", "1 1", "1 2", "0 2"})
+      vertices += fmt::format("v {} {}\n", place, z);
+  for (int first = 0; first < 6; ++first) {
+    std::string faces, bottom = "f", top = "f";
+    for (int k = 0; k < 6; ++k) {
+      top += fmt::format(" {}", 7 + (first + k) % 6);
+      bottom += fmt::format(" {}", 1 + (first + 6 - k) % 6);
+      faces += fmt::format("f {} {} {} {}\n", 1 + k, 1 + (k + 1) % 6, 7 + (k + 1) % 6, 7 + k);
+    }
+    const TriMesh mesh =
+        ReadTriMesh(Write(folder / "l.obj", vertices + faces + top + "\n" + bottom + "\n")).mesh;
+    const SurfaceReport report = CheckSurface(mesh);
+    EXPECT_TRUE(report.BoundsVolume()) << first << ": " << DescribeFaults(report);
+    EXPECT_NEAR(report.volume, 3, 1e-12) << first;
+    EXPECT_NEAR(report.area, 2 * 3 + 8, 1e-12) << first;
+  }
+}
+
+TEST(ReadTriMesh, RefusesAPlyFileWithoutACoordinate) {
+  const TemporaryFolder folder;
+  for (const char* name : {"x", "y", "z"}) {
+    std::string text(kPly);
+    const std::string line = fmt::format("property float {}\n", name);
+    text.replace(text.find(line), line.size(), fmt::format("property float {}\n", Capitals(name)));
+    EXPECT_THAT(TriFailure(Write(folder / "a.ply", text)),
+                HasSubstr(fmt::format("a.ply: its vertices have no property \"{}\"", name)));
+  }
+}
+
+TEST_P(TriFormat, RefusesCoordinatesWhoseProductsOverflow) {
+  const TemporaryFolder folder;
+  const auto& [name, content] = GetParam();
+  std::string text(content);
+  // PLY: as a float, it would be infinite.
+  if (const size_t at = text.find("float z"); at != std::string::npos)
+    text.replace(at, 5, "double");
+  for (size_t at = text.find("0.5"); at != std::string::npos; at = text.find("0.5"))
+    text.replace(at, 3, "1e200");
+  EXPECT_THAT(TriFailure(Write(folder / name, text)), HasSubstr("has a coordinate beyond 1e+100"));
 }
 
 TEST(WriteTriMesh, RoundTripsBitByBit) {
@@ -284,6 +335,21 @@ TEST(ReadTetMesh, DropsUnusedNodesAndReportsWhichRemain) {
   EXPECT_THAT(read.notes, ElementsAre(HasSubstr("dropped 2 nodes")));
 }
 
+// Gmsh 2.2 writes an element once for each physical group of its volume.
+TEST(ReadTetMesh, DropsTetrahedraThatAreListedAgainWithANote) {
+  const TemporaryFolder folder;
+  std::string text(kMsh);
+  const auto replace = [&text](const std::string& what, const std::string& by) {
+    text.replace(text.find(what), what.size(), by);
+  };
+  replace("$Elements\n3\n", "$Elements\n5\n");
+  replace("$EndElements", "4 4 2 9 1 10 20 30 40\n5 4 2 9 1 20 30 40 50\n$EndElements");
+  const TetMeshFile read = ReadTetMesh(Write(folder / "a.msh", text));
+  EXPECT_EQ(read.mesh.TetCount(), 2);
+  EXPECT_EQ(read.mesh.tets.col(0), Eigen::Vector4i(0, 1, 2, 3));
+  EXPECT_THAT(read.notes, ElementsAre(HasSubstr("dropped 2 tetrahedra that repeat")));
+}
+
 TEST(ReadTetMesh, RefusesTetrahedraThatFormNoMesh) {
   const TemporaryFolder folder;
   const std::string nodes = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0.2 0.2 3\nv 1 1 0\nv 0 0 -1\n";
@@ -353,11 +419,6 @@ TEST(ReadTriMesh, ReadsObjAsItIsWritten) {
               HasSubstr("a.obj:5: there is no vertex 9: they count from 1 to 4"));
 }
 
-std::string Capitals(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return text;
-}
-
 std::string BinaryStl(const std::string& header, uint32_t announced, int written) {
   std::string bytes = header + std::string(80 - header.size(), ' ');
   bytes.append(reinterpret_cast<const char*>(&announced), 4);
@@ -396,9 +457,12 @@ TEST(ReadTriMesh, ReadsTheVariantsOfOff) {
   for (const std::string& head :
        {std::string("OFF 4 2 0\n"), std::string("OFF4 2 0\n"),
         std::string("# a comment\nOFF # another\n\n4 2\n"), std::string("off\n4 2 0\n"),
-        std::string("4 2 0\n"), std::string("\xef\xbb\xbfOFF\r\n4 2 0\r\n")}) {
+        std::string("4 2 0\n"), std::string("\xef\xbb\xbfOFF\r\n4 2 0\r\n"),
+        std::string("OFF\n4\n2\n7\n"), std::string("OFF 4\n2\n")}) {
     EXPECT_EQ(Counts("a.off", head + v + f), "4 2") << head;
   }
+  EXPECT_THAT(Counts("a.off", "OFF\n4 1 0\n" + v + f),
+              HasSubstr("a.off:8: a line follows, but the number of faces is 1"));
   EXPECT_EQ(Counts("a.off",
                    "COFF\n4 1 0\n0 0 0 255 0 0 255\n1 0 0 255 0 0 255\n1 1 0 9 9 9 9\n"
                    "0 1 0 0.1 0.2 0.3 1 # grey\n4 0 1 2 3 0.5 0.5 0.5\n"),
@@ -417,6 +481,8 @@ TEST(ReadTriMesh, ReadsTheVariantsOfOff) {
   EXPECT_THAT(Counts("a.off", binary({3, 1, 0, 0, 0, 0, kOne, 0, 0, 0, kOne, 0, 3, 0, 1, 7, 0})),
               HasSubstr("face 1 of 1: there is no vertex 7"));
   EXPECT_THAT(Counts("a.off", binary({3, 1, 0, 0, 0, 0, kOne})), HasSubstr("is truncated"));
+  EXPECT_THAT(Counts("a.off", binary({3, 1, 0, 0, 0, 0, kOne, 0, 0, 0, kOne, 0, 3, 0, 1, 2, 0, 9})),
+              HasSubstr("4 bytes follow, but the number of faces is 1"));
   EXPECT_THAT(Counts("a.off", "4OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("4OFF is not read"));
   EXPECT_THAT(Counts("a.off", "OFF\n4 2 0\n" + v + "3 0 1 2\n"),
               HasSubstr("the file ends where face 2 of 2 should follow"));

@@ -105,6 +105,17 @@ TEST(CheckSurface, FindsAnInsideOutBody) {
   EXPECT_THAT(DescribeFaults(report), HasSubstr("inside out"));
 }
 
+// The two sides of one triangle, which enclose nothing.
+TEST(CheckSurface, FindsAClosedComponentWithoutVolume) {
+  const TriMesh sides =
+      MeshOf({{0.1, 0.2, 0.3}, {1, 0, 0.1}, {0.2, 1, 0.7}}, {{0, 1, 2}, {0, 2, 1}});
+  const SurfaceReport report = CheckSurface(Together(Icosphere(1, 2), sides), false);
+  EXPECT_EQ(report.flat_components.size(), 1u);
+  EXPECT_TRUE(report.inside_out_components.empty());
+  EXPECT_FALSE(report.IsOutward());
+  EXPECT_THAT(DescribeFaults(report), HasSubstr("1 × closed component without volume"));
+}
+
 TEST(CheckSurface, FindsEdgesOfThreeTriangles) {
   TriMesh sphere = Icosphere(1, 2);
   const int a = sphere.triangles(0, 5), b = sphere.triangles(1, 5);

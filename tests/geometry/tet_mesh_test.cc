@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "geometry/surface_check.h"
 #include "support/box_mesh.h"
 #include "support/shapes.h"
@@ -30,6 +32,33 @@ TEST(TetMesh, FindsATetrahedronWithoutVolume) {
   const Eigen::Index flat = FindFlatTet(box);
   ASSERT_GE(flat, 0);
   EXPECT_LE(flat, 7) << "others at that corner may have become flat too";
+}
+
+// Coordinates far from the origin are rounded, so that the volume of a flat tetrahedron need not be
+// a rounding error of its own edges.
+TEST(TetMesh, FindsATetrahedronWhoseVolumeIsTheRoundingOfItsCoordinates) {
+  constexpr double kFar = 1e6, kEdge = 1e-3;
+  Eigen::Matrix<double, 3, 4> corners;
+  corners << 0, kEdge, 0, 0, 0, 0, kEdge, 0, 0, 0, 0, kEdge;
+  TetMesh one{corners.array() + kFar, Eigen::Vector4i(0, 1, 2, 3)};
+  EXPECT_EQ(FindFlatTet(one), -1);
+  one.nodes(2, 3) = std::nextafter(kFar, 2 * kFar);
+  EXPECT_EQ(FindFlatTet(one), 0);
+}
+
+TEST(TetMesh, VolumeOfCurvatureIsThatBetweenCurvedEdgesAndTheirChords) {
+  EXPECT_EQ(VolumeOfCurvature(Box()), 0);
+  EXPECT_EQ(VolumeOfCurvature(ToQuadratic(Box())), 0);
+  Eigen::Matrix<double, 3, 4> corners;
+  corners << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;
+  TetMesh one = ToQuadratic({corners, Eigen::Vector4i(0, 1, 2, 3)});
+  EXPECT_TRUE(HasStraightEdges(one, 0));
+  // With the midpoint of the edge (1,2) at (0.5 + d, 0.5 + d, 0), the determinant is
+  // 1 + 4 d (ξ_1 + ξ_2), whose integral is 1/6 + d/3.
+  constexpr double kShift = 0.1;
+  one.nodes.col(one.tets(5, 0)) += Vector3d(kShift, kShift, 0);
+  EXPECT_FALSE(HasStraightEdges(one, 0));
+  EXPECT_NEAR(VolumeOfCurvature(one), kShift / 3, 1e-15);
 }
 
 TEST(ToQuadratic, PutsOneNodeOnTheMiddleOfEachEdge) {

@@ -30,6 +30,16 @@ TEST(MeasureTets, GivesTheKnownValuesOfARegularTetrahedron) {
   EXPECT_EQ(quality.inverted, 0);
 }
 
+TEST(MeasureTets, CountsCurvedEdgesInTheTotalVolume) {
+  Eigen::Matrix<double, 3, 4> corners;
+  corners << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;
+  TetMesh mesh = ToQuadratic(OneTet(corners));
+  EXPECT_NEAR(MeasureTets(mesh).total_volume, 1.0 / 6, 1e-15);
+  // tet_mesh_test.cc has the formula.
+  mesh.nodes.col(mesh.tets(5, 0)) += Eigen::Vector3d(0.1, 0.1, 0);
+  EXPECT_NEAR(MeasureTets(mesh).total_volume, 0.2, 1e-15);
+}
+
 TEST(MeasureTets, GivesTheKnownValuesOfTheCornerOfACube) {
   Eigen::Matrix<double, 3, 4> corners;
   corners << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;

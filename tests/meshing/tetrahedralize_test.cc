@@ -314,5 +314,10 @@ TEST_P(NarrowGap, IsMeshedOrReported) {
   }
 }
 
+TEST(MeshTetrahedra, ChecksTheRangesOfItsOptions) {
+  EXPECT_DEATH(MeshTetrahedra({}, {.min_dihedral_angle = -0.1}), "min_dihedral_angle");
+  EXPECT_DEATH(MeshTetrahedra({}, {.max_added_nodes = -1}), "max_added_nodes");
+}
+
 }  // namespace
 }  // namespace lacuna

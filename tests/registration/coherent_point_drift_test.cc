@@ -299,5 +299,18 @@ TEST(CoherentPointDriftTest, TargetsInOnePlaceDoNotCrash) {
   EXPECT_TRUE(result.displaced.allFinite());
 }
 
+TEST(CoherentPointDriftTest, ChecksTheRangesOfItsOptions) {
+  const auto run = [](auto member, auto value) {
+    CpdOptions options;
+    options.*member = value;
+    RegisterNonrigid({}, {}, options);
+  };
+  EXPECT_DEATH(run(&CpdOptions::beta, 0.0), "options.beta");
+  EXPECT_DEATH(run(&CpdOptions::sigma_floor, 0.0), "options.sigma_floor");
+  EXPECT_DEATH(run(&CpdOptions::tangential_weight, 1.5), "options.tangential_weight");
+  EXPECT_DEATH(run(&CpdOptions::rank_tolerance, -1.0), "options.rank_tolerance");
+  EXPECT_DEATH(run(&CpdOptions::max_iterations, 0), "options.max_iterations");
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -223,6 +223,29 @@ TEST(Cobyla, NanAndInfinityAreFailuresAndNeverTheResult) {
   }
 }
 
+// The first simplex must not be flat where no neighbour along an axis can be evaluated.
+TEST(Cobyla, ContinuesFromABoundBesideWhichAllEvaluationsFail) {
+  for (const CobylaMode mode : kBothModes) {
+    const SearchResult result =
+        Checked(InBox(VectorXd::Zero(2), 0, 1,
+                      [](const VectorXd& x) { return x[0] > 0 && x[0] < 0.9 ? kNaN : Bowl(x); }),
+                Options(mode, 0.05));
+    EXPECT_GT(result.failures, 1);
+    EXPECT_EQ(result.x()[0], 0);
+    EXPECT_NEAR(result.x()[1], 0.3, 0.1);  // the first simplex ends at 0.05
+  }
+}
+
+TEST(Cobyla, ReportsTheLimitThatHasEndedASearchWithoutAnyValue) {
+  for (const CobylaMode mode : kBothModes) {
+    const SearchResult result =
+        Checked(InBox(VectorXd::Constant(4, 0.6), 0, 1, [](const VectorXd&) { return kNaN; }),
+                Options(mode), 3);
+    EXPECT_FALSE(result.IsUsable());
+    EXPECT_EQ(result.status, SearchStatus::kEvaluations);
+  }
+}
+
 TEST(Cobyla, RegionsOfFailuresNeitherHangNorLoseTheBestPoint) {
   for (const CobylaMode mode : kBothModes) {
     for (int seed = 0; seed < 100; ++seed) {

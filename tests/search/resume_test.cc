@@ -111,16 +111,6 @@ TEST_F(Resume, ContinuesWithALargerBudget) {
   EXPECT_FALSE(resumed.trace[20].from_log);
 }
 
-TEST_F(Resume, StopsOnRequestAndAtTheTimeLimit) {
-  control_.interrupted = [] { return true; };
-  EXPECT_EQ(RunModern().status, SearchStatus::kInterrupted);
-  control_.interrupted = nullptr;
-  control_.max_seconds = 0;
-  const SearchResult result = RunModern();
-  EXPECT_EQ(result.status, SearchStatus::kTime);
-  EXPECT_FALSE(result.IsUsable());
-}
-
 TEST_F(Resume, DropsAnIncompleteLastLine) {
   control_.log = file_;
   const SearchResult whole = RunModern();
