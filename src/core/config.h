@@ -39,8 +39,8 @@ class Config {
   static Config Parse(const std::string& text, const std::string& name);
 
   // The functions below read `key` of this mapping. Without a default value the key is required.
-  // All values are returned in SI units. Each throws InputError with position and field if the key
-  // is missing, has the wrong type or unit, or lies outside the bounds.
+  // All values are returned in SI units; a 0 needs no unit. Each throws InputError with position
+  // and field if the key is missing, has the wrong type or unit, or lies outside the bounds.
   double Quantity(const std::string& key, const Dimension& dimension, const Bounds& bounds) const;
   double Quantity(const std::string& key, const Dimension& dimension, const Bounds& bounds,
                   double default_value) const;
@@ -59,11 +59,11 @@ class Config {
   std::vector<std::string> Texts(const std::string& key) const;
   // A list of whole numbers; empty if the key is absent.
   std::vector<int> Integers(const std::string& key, int min) const;
-  // Three quantities, as in [0, 0, -9.81 m/s^2]; 0 needs no unit.
+  // Three quantities, as in [0, 0, -9.81 m/s^2].
   Eigen::Vector3d Vector(const std::string& key, const Dimension& dimension) const;
   Eigen::Vector3d Vector(const std::string& key, const Dimension& dimension,
                          const Eigen::Vector3d& default_value) const;
-  // A list of quantities of any length; empty if the key is absent. 0 needs no unit.
+  // A list of quantities of any length; empty if the key is absent.
   std::vector<double> Quantities(const std::string& key, const Dimension& dimension,
                                  const Bounds& bounds) const;
   // A path. A relative path is resolved from the folder of the file that contains it; "${NAME}" is

@@ -164,9 +164,7 @@ std::vector<double> Config::Quantities(const std::string& key, const Dimension& 
       const std::string field = fmt::format("{}[{}]", node_->Field(key), values.size());
       const std::string text = node_->Scalar(item, field, dimension.name);
       try {
-        // Zero needs no unit, because it has the same meaning in every unit.
-        values.push_back(
-            text == "0" || text == "0.0" ? 0.0 : ParseQuantityWithin(text, dimension, bounds));
+        values.push_back(ParseQuantityWithin(text, dimension, bounds));
       } catch (const std::invalid_argument& problem) {
         node_->Fail(item.Mark(), field, problem.what());
       }

@@ -232,6 +232,7 @@ double ParseQuantity(std::string_view text, const Dimension& expected) {
   } catch (const std::invalid_argument& problem) {
     refuse(problem.what());
   }
+  if (unit_text.empty() && number == 0) return 0;
   if (unit_text.empty() && !expected.SameAs(kDimensionless)) refuse("a unit is missing");
   if (!unit.dimension.SameAs(expected)) refuse("its unit has another dimension");
   return number * unit.si;
@@ -250,6 +251,10 @@ MeasuredQuantity ParseAnyQuantity(std::string_view text) {
         fmt::format("got \"{}\"{}; expected a number with its unit, e.g. \"3 N/kg\"", trimmed,
                     why.empty() ? "" : " (" + why + ")"));
   }
+}
+
+std::string DurationText(double seconds) {
+  return seconds < 1 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
 }
 
 }  // namespace lacuna

@@ -42,8 +42,9 @@ inline constexpr Dimension kAngle{0, 0, 0, 0, 1, "an angle", "30 deg", "rad"};
 
 // Returns the SI value of `text`, a number with a unit. Products of units are written with a space,
 // '*' or '·', quotients with '/' and powers with '^'. A number without a unit is accepted only for
-// a dimensionless quantity. Throws std::invalid_argument with a message that states what was
-// expected if `text` is not a finite number, or if its unit is unknown or has another dimension.
+// a dimensionless quantity, and 0 for any, because it is the same in every unit. Throws
+// std::invalid_argument with a message that states what was expected if `text` is not a finite
+// number, or if its unit is unknown or has another dimension.
 double ParseQuantity(std::string_view text, const Dimension& expected);
 
 // A quantity with the dimension of its own unit, e.g. "3 N/kg"; dimensionless without a unit.
@@ -53,6 +54,9 @@ struct MeasuredQuantity {
 };
 // Throws std::invalid_argument for text that is not a number or has an unknown unit.
 MeasuredQuantity ParseAnyQuantity(std::string_view text);
+
+// A length of time in s to three digits, as "2.5 ms" or, from one second on, "1.5 s".
+std::string DurationText(double seconds);
 
 }  // namespace lacuna
 

@@ -40,7 +40,7 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
   for (const RecordedGrip& grip : recording.object.grips)
     parts.push_back({grip.region, grip.axes, /*moves=*/true});
   const std::vector<Eigen::VectorXi> held =
-      NamingWhere(recording.file.string(), [&] { return NodesOfParts(parts, reference.nodes); });
+      NamingWhere(recording.file.string(), [&] { return NodesOfParts(parts, reference); });
   auto nodes = held.begin();
   for (const RecordedSupport& support : recording.object.fixed)
     model->grips.push_back({*nodes++, {}, support.axes});

@@ -42,15 +42,14 @@ class Holders {
 
 }  // namespace
 
-std::vector<Eigen::VectorXi> NodesOfParts(const std::vector<HeldPart>& parts,
-                                          const Eigen::Matrix3Xd& nodes) {
+std::vector<Eigen::VectorXi> NodesOfParts(const std::vector<HeldPart>& parts, const TetMesh& mesh) {
   std::vector<Eigen::VectorXi> inside;
   std::set<int> whole;  // nodes that a part holds along all axes
   for (const HeldPart& part : parts) {
-    inside.push_back(NodesIn(part.region, nodes));
+    inside.push_back(NodesIn(part.region, mesh));
     if (part.axes.IsAll()) whole.insert(inside.back().begin(), inside.back().end());
   }
-  Holders holders(nodes.cols());
+  Holders holders(mesh.NodeCount());
   std::vector<Eigen::VectorXi> held;
   for (size_t k = 0; k < parts.size(); ++k) {
     std::vector<int> own;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/axis_set.h"
+#include "geometry/tet_mesh.h"
 #include "scan/region.h"
 
 namespace lacuna {
@@ -16,12 +17,11 @@ struct HeldPart {
   bool moves = false;
 };
 
-// The nodes (columns of 3 × n, m) of each part, ascending. A part that is held along some axes only
+// The nodes of the mesh in each part, ascending. A part that is held along some axes only
 // does without the nodes that another part holds along all axes, as where a plane of symmetry meets
 // a clamp; two such parts at rest may share nodes. Throws InputError with the names of the parts
 // where one holds no node, two others hold a node along the same axis, or no component is free.
-std::vector<Eigen::VectorXi> NodesOfParts(const std::vector<HeldPart>& parts,
-                                          const Eigen::Matrix3Xd& nodes);
+std::vector<Eigen::VectorXi> NodesOfParts(const std::vector<HeldPart>& parts, const TetMesh& mesh);
 
 }  // namespace lacuna
 

@@ -17,7 +17,7 @@ EffectList MakeKnownForces(const Recording& recording, const Model& grips_and_bo
   for (const MeasuredForce& force : recording.object.forces) {
     const std::string where = recording.file.string() + ": " + force.name;
     std::vector<int> nodes =
-        NamingWhere(where, [&] { return SelectNodes(*force.region, body.mesh.nodes); });
+        NamingWhere(where, [&] { return SelectNodes(*force.region, body.mesh); });
     std::erase_if(nodes, [&areas](int node) { return areas[node] == 0; });
     if (nodes.empty())
       throw InputError(where + " acts on no boundary node: its region is too small");

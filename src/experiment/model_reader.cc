@@ -174,8 +174,8 @@ Profile ReadProfile(const Config& config) {
   return profile;
 }
 
-Eigen::VectorXi NodesIn(const Region& region, const Eigen::Matrix3Xd& nodes) {
-  const std::vector<int> selected = SelectNodes(region, nodes);
+Eigen::VectorXi NodesIn(const Region& region, const TetMesh& mesh) {
+  const std::vector<int> selected = SelectNodes(region, mesh);
   return Eigen::Map<const Eigen::VectorXi>(selected.data(),
                                            static_cast<Eigen::Index>(selected.size()));
 }

@@ -68,8 +68,8 @@ struct Profile {
 // Reads `profile: {times: [0 s, 0.5 s], values: [0, 1]}`; without it the profile is 1 at all times.
 Profile ReadProfile(const Config& config);
 
-// The indices of the mesh nodes (3 × n, m) inside a region.
-Eigen::VectorXi NodesIn(const Region& region, const Eigen::Matrix3Xd& nodes);
+// The nodes of the mesh in a region, as SelectNodes gives them.
+Eigen::VectorXi NodesIn(const Region& region, const TetMesh& mesh);
 
 }  // namespace lacuna
 

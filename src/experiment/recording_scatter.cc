@@ -135,13 +135,17 @@ RecordingScatter ScatterSurvey::OfTracks() const {
   result.is_upper_bound = !noise.is_at_rest;
   if (std::isnan(noise.deviation)) return result;
   for (Eigen::Index m = 0; m < count; ++m) {
-    const TrackNoise own = EstimateTrackNoise(times, tracks.middleRows<3>(3 * m));
-    if (!(own.deviation > result.largest)) continue;
-    // Fast motion of this point is not its scatter.
-    if (noise.is_at_rest && !own.is_at_rest) continue;
-    result.largest = own.deviation;
-    result.largest_in = has_names ? fmt::format("marker {}", markers.names[chosen[m]])
-                                  : fmt::format("row {}", chosen[m]);
+    // In the frames in which all points rest: a single point may be slow while it moves.
+    const Eigen::MatrixXd track = tracks.middleRows<3>(3 * m);
+    const double own = noise.is_at_rest ? MeasureSpan(times, track, noise.rest.measured_first,
+                                                      noise.rest.measured_last)
+                                              .deviation
+                                        : WhiteNoise(track);
+    if (!(own > result.largest)) continue;
+    result.largest = own;
+    result.largest_in =
+        fmt::format("{} {}", HasTrackedPoints(recording_) ? "point" : "marker",
+                    has_names ? markers.names[chosen[m]] : fmt::format("p{}", chosen[m]));
   }
   const TrackOutliers outliers =
       FindTrackOutliers(times, tracks, noise.deviation * factors.cwiseInverse());

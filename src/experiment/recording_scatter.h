@@ -23,7 +23,7 @@ struct RecordingScatter {
   // frames in which the points rest.
   bool is_upper_bound = false;
   double largest = 0;        // m, σ of the frame, marker or tracked point that scatters most
-  std::string largest_in;    // its name: "frame 7", "marker tip", "row 12"
+  std::string largest_in;    // its name: "frame 7", "marker tip", or "point p12" of row 12
   double spacing = 0;        // m, of the points of a cloud (median over the frames); 0: none
   double outlier_share = 0;  // of all points in all frames; NaN where none could be judged
   int worst_frame = -1;      // the frame with the largest share of outliers; −1 without any

@@ -39,24 +39,6 @@ TriMesh ReferenceSurface(const ReferenceRequest& request, std::vector<std::strin
   return request.first_surface != nullptr ? *request.first_surface : TriMesh{};
 }
 
-// Regions that list nodes use the numbers in the file, which change when the reader drops unused
-// nodes.
-void RefuseRenumberedRegions(const ReferenceRequest& request, const TetMeshFile& given) {
-  bool renumbered = false;
-  for (Eigen::Index i = 0; i < given.node_in_file.size(); ++i)
-    renumbered = renumbered || given.node_in_file[i] != i;
-  if (!renumbered) return;
-  std::vector<Region> regions = request.regions;
-  for (Region& region : RegionsOf(request.recording.object)) regions.push_back(std::move(region));
-  for (const Region& region : regions) {
-    if (!std::holds_alternative<NodeRegion>(region.shape)) continue;
-    throw InputError(fmt::format(
-        "{}: has nodes that no tetrahedron uses, so the node numbers of region \"{}\" would shift; "
-        "remove them or describe the region by its shape",
-        request.recording.reference.file.string(), region.name));
-  }
-}
-
 MeshRecord Describe(const TetMesh& mesh) {
   const TetQuality quality = MeasureTets(mesh);
   return {.node_count = mesh.NodeCount(),
@@ -88,7 +70,6 @@ ReferenceBody MakeReferenceBody(const ReferenceRequest& request) {
   if (reference.source == ReferenceSource::kTetMesh) {
     TetMeshFile given = ReadTetMesh(reference.file);
     given.mesh.nodes = reference.world_from_file * given.mesh.nodes;
-    RefuseRenumberedRegions(request, given);
     body.mesh = given.mesh;
     body.notes = given.notes;
   } else {

@@ -28,8 +28,6 @@ struct ReferenceRequest {
   int sheet_layers = 1;
   int first_frame = 0;
   const TriMesh* first_surface = nullptr;  // surface of that frame; null where there is none
-  // Regions of the study, besides those of the recording, that may list nodes of a given mesh.
-  std::vector<Region> regions = {};
 };
 
 // Throws InputError with the reason when the shape cannot be meshed, and OutOfMemory

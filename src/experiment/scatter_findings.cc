@@ -96,7 +96,8 @@ void AddDoubtOfOutliers(const RecordingScatter& scatter, std::vector<std::string
     return;
   doubts->push_back(fmt::format(
       "{} of the points are outliers, more than five standard deviations off the surface through "
-      "their neighbours and up to {}; most in frame {}, {}. `crop` under `frames` leaves out what "
+      "their neighbours and up to {}; most in frame {}, {} of its points. `crop` under `frames` "
+      "leaves out what "
       "is beside the object, and a smaller `outlier_deviations` under `filter` more of the rest",
       InPercent(scatter.outlier_share), InMillimetres(scatter.farthest), scatter.worst_frame,
       InPercent(scatter.worst_share)));
@@ -131,10 +132,11 @@ std::string DescribeScatter(const RecordingScatter& scatter, const StatedNoise& 
                         scatter.is_of_surface ? "are outliers" : "leave their track for a frame");
   if (scatter.worst_frame >= 0) {
     const std::string farthest = "up to " + InMillimetres(scatter.farthest);
-    text += fmt::format(", {}, most in frame {}, {}",
+    text += fmt::format(", {}, most in frame {}, {} of the {}",
                         scatter.is_of_surface ? farthest + " off the surface"
                                               : "by " + farthest + " in a coordinate",
-                        scatter.worst_frame, InPercent(scatter.worst_share));
+                        scatter.worst_frame, InPercent(scatter.worst_share),
+                        scatter.is_of_surface ? "points" : "tracks");
   }
   return text + NoteOfStated(scatter, noise);
 }

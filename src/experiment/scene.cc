@@ -48,9 +48,17 @@ TriMesh BarSurface(const BarShape& bar) {
   return surface;
 }
 
+// The nodes of a bar have no numbers that could be listed.
+Region ReadShape(const Config& config, const std::string& name) {
+  Region region = ReadRegion(config.Child("region"), {}, name);
+  if (std::holds_alternative<NodeRegion>(region.shape))
+    config.Fail("region", "expected box, sphere or half_space");
+  return region;
+}
+
 SceneGrip ReadGrip(const Config& config, int index) {
   SceneGrip grip;
-  grip.region = ReadRegion(config.Child("region"), {}, fmt::format("grip {}", index));
+  grip.region = ReadShape(config, fmt::format("grip {}", index));
   grip.translation = config.Vector("translation", kLength, grip.translation);
   grip.axis = ReadAxis(config, grip.axis);
   grip.centre = config.Vector("centre", kLength, grip.centre);
@@ -130,8 +138,7 @@ Scene ReadScene(const Config& config) {
   int index = 0;
   for (const Config& item : config.Items("grips")) scene.grips.push_back(ReadGrip(item, index++));
   for (const Config& item : config.Items("loads")) {
-    scene.loads.push_back({ReadRegion(item.Child("region"), {}, "load"),
-                           item.Vector("force", kForce), ReadProfile(item),
+    scene.loads.push_back({ReadShape(item, "load"), item.Vector("force", kForce), ReadProfile(item),
                            item.Flag("measured", false)});
   }
   const Config motion = config.Child("motion");
@@ -163,7 +170,7 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
   std::vector<HeldPart> parts;
   for (const SceneGrip& grip : scene.grips)
     parts.push_back({grip.region, grip.axes, !IsHeld(grip)});
-  auto nodes = NodesOfParts(parts, body->mesh.nodes);
+  auto nodes = NodesOfParts(parts, body->mesh);
   for (size_t k = 0; k < scene.grips.size(); ++k) {
     const SceneGrip& grip = scene.grips[k];
     Grip held{std::move(nodes[k]), {}, grip.axes};
@@ -172,7 +179,7 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
   }
   for (const SceneLoad& load : scene.loads) {
     model.effects.push_back(std::make_shared<PrescribedForce>(
-        BoundaryShares(*body, NodesIn(load.region, body->mesh.nodes)),
+        BoundaryShares(*body, NodesIn(load.region, body->mesh)),
         [&load](double time) -> Eigen::Vector3d { return load.profile.At(time) * load.force; }));
   }
 

@@ -92,7 +92,7 @@ void ConvertTrackedPointsToMarkers(const std::vector<int>& frames, Recording* re
     const std::vector<int> inside = NamingWhere(recording->file.string(), [&] {
       const Eigen::Matrix3Xd shown = places(Eigen::all, seen);
       std::vector<int> rows;
-      for (const int k : SelectNodes(grip.region, shown)) rows.push_back(seen[k]);
+      for (const int k : SelectPoints(grip.region, shown)) rows.push_back(seen[k]);
       return rows;
     });
     grip.motion = GripMotion::kFollowsMarkers;

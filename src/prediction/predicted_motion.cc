@@ -41,8 +41,8 @@ std::vector<Eigen::Matrix3Xd> FollowGrips(const PredictedRecording& item, double
   std::vector<Eigen::Matrix3Xd> moved(item.frames.size(), mesh.nodes);
   for (const RecordedGrip& grip : item.recording.object.grips) {
     if (grip.motion != GripMotion::kFollowsScan) continue;
-    const std::vector<int> nodes = NamingWhere(
-        item.recording.file.string(), [&] { return SelectNodes(grip.region, mesh.nodes); });
+    const std::vector<int> nodes =
+        NamingWhere(item.recording.file.string(), [&] { return SelectNodes(grip.region, mesh); });
     const std::vector<Eigen::Isometry3d> motions = FollowGrip(
         *item.scans, item.frames, boundary, {grip.region.name, nodes, reach, rests_at_first});
     for (size_t k = 0; k < motions.size(); ++k)

@@ -1,6 +1,7 @@
 #include "prediction/predicted_recording_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
@@ -78,6 +79,24 @@ void RequireStartAtRest(const Config& config, const PredictedRecording& item) {
                 "rest: give `from:` or `hold:`");
 }
 
+// Requires the place of each marker on the undeformed object.
+void RequirePlaces(const Config& config, const Recording& recording) {
+  std::vector<std::string> placed, missing;
+  for (Eigen::Index m = 0; m < recording.markers.places.cols(); ++m)
+    (recording.markers.places.col(m).allFinite() ? placed : missing)
+        .push_back(recording.markers.names[static_cast<size_t>(m)]);
+  if (missing.empty()) return;
+  const std::string other =
+      placed.empty() ? ""
+                     : fmt::format(", or `markers: [{}]` under `frames`, which leaves out the rest",
+                                   fmt::join(placed, ", "));
+  config.Fail("recording",
+              fmt::format("the place of {} on the undeformed object is not known: {} needs "
+                          "`marker_places` for {}{}",
+                          fmt::join(missing, ", "), recording.file.string(),
+                          missing.size() == 1 ? "it" : "them", other));
+}
+
 // Checks that the recording contains what a prediction of markers or of scans needs.
 void CheckObserved(const Config& config, const PredictedRecording& item, bool tells_the_shape) {
   const Recording& recording = item.recording;
@@ -89,9 +108,7 @@ void CheckObserved(const Config& config, const PredictedRecording& item, bool te
         "the places of tracked points are taken from the first frame, so the object may not "
         "be held in a deformed shape there");
   if (item.scans == nullptr) {
-    if (!recording.markers.places.allFinite())
-      config.Fail("recording",
-                  "lacks marker_places: the place of each marker on the undeformed object");
+    RequirePlaces(config, recording);
     if (of_first_frame && !is_tracked)
       config.Fail("recording", "has no reference shape: markers alone do not determine it");
     for (const RecordedGrip& grip : recording.object.grips)
@@ -114,16 +131,12 @@ void CheckObserved(const Config& config, const PredictedRecording& item, bool te
   }
 }
 
-void RequireGripPaths(const Config& config, const PredictedRecording& item) {
-  const double first = item.recording.times[item.frames.front()];
-  const double last = item.recording.times[item.frames.back()];
-  for (const RecordedGrip& grip : item.recording.object.grips) {
-    const Eigen::Index end = grip.times.size() - 1;
-    if (grip.motion == GripMotion::kGiven && (grip.times[0] > first || grip.times[end] < last))
-      config.Fail("recording",
-                  fmt::format("{} covers {:g} s to {:g} s, the frames {:g} s to {:g} s",
-                              grip.file.string(), grip.times[0], grip.times[end], first, last));
-  }
+// Requires that the given paths and forces cover the frames that are used.
+void RequireCoveredFrames(const Config& config, const PredictedRecording& item) {
+  const int first = item.frames.front(), last = item.frames.back();
+  for (const std::string& problem : {DescribeUncoveredPath(item.recording, first, last),
+                                     DescribeUncoveredForce(item.recording, first, last)})
+    if (!problem.empty()) config.Fail("recording", problem);
 }
 
 // Estimates the noise of readings that do not say it, and requires that each covers a frame.
@@ -132,7 +145,7 @@ void CheckReactions(const Config& config, PredictedRecording* item) {
   for (MeasuredReaction& reaction : item->recording.object.reactions) {
     if (std::none_of(item->frames.begin(), item->frames.end(),
                      [&](int frame) { return reaction.Covers(times[frame]); }))
-      config.Fail("recording", fmt::format("{} covers {:g} s to {:g} s, in which no frame lies",
+      config.Fail("recording", fmt::format("{} covers {:.9g} s to {:.9g} s, in which no frame lies",
                                            reaction.file.string(), reaction.times[0],
                                            reaction.times[reaction.times.size() - 1]));
     if (reaction.deviation > 0) continue;
@@ -152,7 +165,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const EffectList& of
                                       const ScanSettings& scan, TimeScheme scheme,
                                       bool tells_the_shape) {
   PredictedRecording item;
-  item.recording = LoadRecording(config.Path("recording"));
+  item.recording = LoadRecording(config, "recording");
   item.name = config.Text("name", item.recording.name);
   if (IsScan(item.recording)) item.scans = std::make_shared<const ScanFrames>(item.recording, scan);
   const double from = config.Quantity("from", kTime, kAnyValue, item.recording.times.front());
@@ -191,19 +204,11 @@ PredictedRecording ReadRecordingEntry(const Config& config, const EffectList& of
   } else {
     RequireStartAtRest(config, item);
   }
-  RequireGripPaths(config, item);
   CheckReactions(config, &item);
-  for (const MeasuredForce& force : item.recording.object.forces) {
-    const double first = item.recording.times[item.frames.front()];
-    const double last = item.recording.times[item.frames.back()];
+  for (const MeasuredForce& force : item.recording.object.forces)
     if (!force.region)
       config.Fail("recording", "does not say where " + force.name + " acts (its region)");
-    const Eigen::Index end = force.times.size() - 1;
-    if (!force.file.empty() && (force.times[0] > first || force.times[end] < last))
-      config.Fail("recording",
-                  fmt::format("{} covers {:g} s to {:g} s, the frames {:g} s to {:g} s",
-                              force.file.string(), force.times[0], force.times[end], first, last));
-  }
+  RequireCoveredFrames(config, item);
   return item;
 }
 

@@ -36,7 +36,7 @@ void ShareGravity(const EffectList& effects, std::vector<ModelParameter>* parame
     if (!setting || !IsSameGravity(*setting, *gravity)) continue;
     for (ModelParameter& parameter : *parameters) {
       const auto [effect, axis] = parameter.places.front();
-      if (&effects[effect]->Card() == &GravityCard())
+      if (IsGravity(*effects[effect]))
         parameter.places.push_back({at, GravitySettingOn(effects[at]->Card()) + axis});
     }
   }
@@ -88,8 +88,12 @@ std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
   return parameters;
 }
 
+const Effect& EffectOf(const ModelParameter& parameter, const EffectList& effects) {
+  return *effects[parameter.places.front().effect];
+}
+
 bool IsDensity(const ModelParameter& parameter, const EffectList& effects) {
-  return IsUniformDensity(*effects[parameter.places.front().effect]);
+  return IsUniformDensity(EffectOf(parameter, effects));
 }
 
 EffectList WithValues(const EffectList& effects, const std::vector<ModelParameter>& parameters,

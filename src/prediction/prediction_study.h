@@ -81,6 +81,8 @@ struct ModelParameter {
 // value whose value it takes from the material where the user omits it, and gravity if it adds mass
 // that has the same gravity.
 std::vector<ModelParameter> ModelParameters(const EffectList& effects);
+// The effect that a parameter belongs to; of effects that share it, the first.
+const Effect& EffectOf(const ModelParameter& parameter, const EffectList& effects);
 // Whether a parameter is the density of the body, which the experiment states beside the effects.
 bool IsDensity(const ModelParameter& parameter, const EffectList& effects);
 // The same effects with these values of the parameters (SI, in the order of `parameters`; further

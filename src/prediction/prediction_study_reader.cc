@@ -9,12 +9,32 @@
 
 #include "effects/gravity.h"
 #include "effects/uniform_density.h"
+#include "experiment/listed_regions.h"
 #include "experiment/model_reader.h"
 #include "prediction/predicted_recording_reader.h"
 #include "prediction/recorded_motion.h"
 
 namespace lacuna {
 namespace {
+
+// Throws InputError where nothing holds the object: under any load it would have no equilibrium to
+// start from. `config` is the entry of the recording.
+void RequireHeldObject(const Config& config, const EffectList& of_study,
+                       const PredictedRecording& item) {
+  const RecordedObject& object = item.recording.object;
+  const auto may_hold = [](const std::shared_ptr<const Effect>& effect) {
+    return MayHold(effect->Card());
+  };
+  if (!object.fixed.empty() || !object.grips.empty() ||
+      std::any_of(of_study.begin(), of_study.end(), may_hold) ||
+      std::any_of(item.effects.begin(), item.effects.end(), may_hold))
+    return;
+  config.Fail(
+      "recording",
+      fmt::format("nothing holds the object{}: {} has neither `fixed` nor `gripped`, and no "
+                  "effect of the model is a support or a contact",
+                  item.hold ? " after its release" : "", item.recording.file.string()));
+}
 
 // Throws InputError where all markers rest at their places on the undeformed object, because such
 // recordings determine no parameter.
@@ -89,7 +109,7 @@ std::vector<ModelParameter> ReadFitted(const Config& config, const EffectList& e
 // The weight of a mass in one recording alone does not follow a gravity that is fitted.
 void RequireKnownWeights(const Config& config, const PredictionStudy& study) {
   for (const ModelParameter& parameter : study.fitted) {
-    if (&study.effects[parameter.places.front().effect]->Card() != &GravityCard()) continue;
+    if (!IsGravity(EffectOf(parameter, study.effects))) continue;
     for (const PredictedRecording& item : study.recordings)
       for (const auto& effect : item.effects)
         if (const auto gravity = GravitySettingOf(*effect); gravity && !gravity->isZero(0))
@@ -108,17 +128,14 @@ void AddDensity(const Config& config, PredictionStudy* study) {
   if (!config.Has("density_deviation")) return;
   study->density_deviation = config.Number("density_deviation", Bounds{0, 0.5});
   if (study->density_deviation == 0) return;
-  const auto is_gravity = [](const std::shared_ptr<const Effect>& effect) {
-    return &effect->Card() == &GravityCard();
-  };
   for (const ModelParameter& parameter : study->fitted)
-    if (is_gravity(study->effects[parameter.places.front().effect]))
+    if (IsGravity(EffectOf(parameter, study->effects)))
       config.Fail("density_deviation",
                   fmt::format("cannot be combined with a fitted {}: the weight of the object is "
                               "the product of both",
                               parameter.prior.name));
   for (const PredictedRecording& item : study->recordings)
-    if (std::any_of(item.effects.begin(), item.effects.end(), is_gravity))
+    if (GravityOf(item.effects))
       config.Fail("density_deviation",
                   fmt::format("needs gravity in the list `effects` of the experiment, not in that "
                               "of {}",
@@ -134,6 +151,18 @@ void AddDensity(const Config& config, PredictionStudy* study) {
   prior.prior_mean = study->density;
   prior.prior_deviation = prior.typical = study->density_deviation;
   study->fitted.push_back(parameter);
+}
+
+// Sets to which nodes the lists of each recording refer: to those of its own reference, or, where
+// it has none, to those of the first recording, whose reference shape is meshed.
+void NumberListsOfRecordings(PredictionStudy* study) {
+  for (PredictedRecording& item : study->recordings) {
+    std::vector<Region*> regions = RegionsIn(&item.recording.object);
+    if (item.hold) regions.push_back(&item.hold->region);
+    const bool has_reference = item.recording.reference.source != ReferenceSource::kFirstFrame;
+    NumberListedNodes(has_reference ? item.recording : study->recordings.front().recording,
+                      study->mesh, regions);
+  }
 }
 
 constexpr double kLongestStep = 0.005;  // s, largest initial time step
@@ -209,9 +238,11 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
         item.Fail("name", fmt::format("\"{}\" is already the name of another recording; an entry "
                                       "without a name has that of its recording",
                                       recording.name));
+    RequireHeldObject(item, study.effects, recording);
     study.recordings.push_back(std::move(recording));
   }
   if (study.recordings.empty()) config.Fail("recordings", "is empty");
+  NumberListsOfRecordings(&study);
   if (std::none_of(study.recordings.begin(), study.recordings.end(),
                    [](const PredictedRecording& item) { return item.fitted; }))
     config.Fail("recordings", "none of them is fitted");

@@ -16,7 +16,7 @@ namespace {
 // noise is correlated from frame to frame.
 constexpr double kMoves = 2;
 
-std::vector<int> FittedFrames(const PredictedRecording& item) {
+std::vector<int> FramesUntil(const PredictedRecording& item) {
   std::vector<int> frames;
   for (const int frame : item.frames)
     if (item.recording.times[frame] <= item.fit_until) frames.push_back(frame);
@@ -45,9 +45,13 @@ Spread SpreadOf(const PredictedRecording& item, const std::vector<int>& frames, 
 
 }  // namespace
 
+std::vector<int> FittedFrames(const PredictedRecording& item) {
+  return item.fitted ? FramesUntil(item) : std::vector<int>();
+}
+
 bool IsAtRest(const PredictedRecording& item) {
   if (item.scans != nullptr) return false;
-  const std::vector<int> frames = FittedFrames(item);
+  const std::vector<int> frames = FramesUntil(item);
   // Without noise, rounding of the mean square must not be mistaken for motion.
   constexpr double kRounding = 1e-9;  // m
   const double least = kMoves * EstimateRecordingNoise(item, frames) + kRounding;
@@ -64,10 +68,9 @@ bool IsAtRest(const PredictionStudy& study) {
 
 std::string RestWarning(const PredictionStudy& study) {
   if (!IsAtRest(study)) return "";
-  const bool is_one_frame = std::all_of(study.recordings.begin(), study.recordings.end(),
-                                        [](const PredictedRecording& item) {
-                                          return !item.fitted || FittedFrames(item).size() == 1;
-                                        });
+  const bool is_one_frame = std::all_of(
+      study.recordings.begin(), study.recordings.end(),
+      [](const PredictedRecording& item) { return !item.fitted || FramesUntil(item).size() == 1; });
   return fmt::format(
       "{} stiffness and constant loads, but not mass, damping, drag or anything else that needs "
       "motion",
@@ -111,6 +114,24 @@ std::string UnseenWarning(const PredictedRecording& item) {
       std::count_if(first, item.frames.end(), is_unseen), item.frames.size(), *first);
 }
 
+std::string FitUntilWarning(const PredictedRecording& item) {
+  const double last = item.recording.times[item.frames.back()];
+  if (!item.fitted || !std::isfinite(item.fit_until) || item.fit_until < last) return "";
+  return fmt::format(
+      "{}: `fit_until: {:g} s` does not lie before the last frame that is used, at {:g} s: all "
+      "frames are fitted, and none is held out",
+      item.name, item.fit_until, last);
+}
+
+std::string ScanSettingsWarning(const PredictionStudy& study) {
+  const bool has_scans =
+      std::any_of(study.recordings.begin(), study.recordings.end(),
+                  [](const PredictedRecording& item) { return item.scans != nullptr; });
+  if (has_scans || !study.configuration.contains("scan")) return "";
+  return "`scan` has no effect: no recording is a scan. The noise of markers and tracked points is "
+         "`noise`";
+}
+
 }  // namespace
 
 std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
@@ -121,15 +142,17 @@ std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
   for (const PredictedRecording& item : study.recordings) {
     for (const std::string& warning : item.recording.warnings) add(item.name + ": " + warning);
     add(UnseenWarning(item));
+    add(FitUntilWarning(item));
     add(SlownessWarning(item, study));
     add(GravityWarning(item, study));
   }
+  add(ScanSettingsWarning(study));
   add(RestWarning(study));
   return warnings;
 }
 
 double RestDeformation(const PredictedRecording& item) {
-  const std::vector<int> frames = FittedFrames(item);
+  const std::vector<int> frames = FramesUntil(item);
   double largest = 0;
   for (Eigen::Index marker = 0; marker < item.recording.markers.places.cols(); ++marker) {
     Eigen::Vector3d mean;

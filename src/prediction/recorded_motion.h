@@ -17,9 +17,13 @@ bool IsAtRest(const PredictedRecording& item);
 bool IsAtRest(const PredictionStudy& study);
 // A warning where nothing moves; empty otherwise.
 std::string RestWarning(const PredictionStudy& study);
+// The frames of a recording that are fitted, ascending; none where it is only predicted. The other
+// used frames are held out.
+std::vector<int> FittedFrames(const PredictedRecording& item);
 // All warnings that a user should see before the computation: RestWarning, the warnings of the
-// recordings, frames that show no marker, frames so far apart that a motion with inertia takes very
-// many steps between them, and a recording under gravity of which the model has none.
+// recordings, frames that show no marker, a `fit_until` that holds out no frame, frames so far
+// apart that a motion with inertia takes very many steps between them, a recording under gravity of
+// which the model has none, and settings of scans where no recording is one.
 std::vector<std::string> StudyWarnings(const PredictionStudy& study);
 
 // For markers at rest, the largest mean distance of a marker from its place on the undeformed

@@ -30,7 +30,7 @@ void RecordingModel::AddNuisance(const std::string& name, const std::string& uni
 void RecordingModel::AddHold(const TetMesh& mesh) {
   const std::string where = study_.file.string() + ": hold of " + item_.name;
   const std::vector<int> nodes =
-      NamingWhere(where, [&] { return SelectNodes(item_.hold->region, mesh.nodes); });
+      NamingWhere(where, [&] { return SelectNodes(item_.hold->region, mesh); });
   const Eigen::VectorXi chosen =
       Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
   const Eigen::VectorXd areas = NodeBoundaryAreas(*model_.body);

@@ -282,13 +282,17 @@ MarkerTracks ReadC3d(const std::filesystem::path& file) {
   MarkerTracks tracks;
   // The last block is filled up, by one block at most in the files of known programs.
   const size_t filled = bytes.Size() - format.data - frame_size * format.frame_count;
-  if (bytes.Word(8) == 65535 && filled > kBlock + frame_size) {
+  if (filled > kBlock + frame_size) {
+    const std::string announced = bytes.Word(8) == 65535
+                                      ? "ends at frame 65535, the largest of 16 bits"
+                                      : fmt::format("announces {} frames", format.frame_count);
     tracks.warnings.push_back(fmt::format(
-        "{}: the 16-bit header ends at frame 65535, but the file has room for {} frames; {} are "
-        "read, because neither TRIAL:ACTUAL_END_FIELD nor POINT:LONG_FRAMES gives their number",
-        file.string(), held, format.frame_count));
+        "{}: the header {}, but the file has room for {} frames; {} are read, because neither "
+        "TRIAL:ACTUAL_END_FIELD nor POINT:LONG_FRAMES gives more",
+        file.string(), announced, held, format.frame_count));
   }
   tracks.names = ReadNames(bytes, parameters, format.marker_count);
+  NumberRepeatedNames(file, &tracks);
   if (const auto units = parameters.find("POINT:UNITS"); units != parameters.end()) {
     const std::vector<std::string> texts = Texts(bytes, units->second, 1);
     if (!texts.empty()) tracks.length_unit = texts[0];

@@ -119,14 +119,11 @@ std::vector<MarkerColumnTriple> MarkersOfMotive(const std::vector<std::string_vi
                                                 const std::vector<std::string_view>& quantities,
                                                 const std::vector<std::string_view>& axes) {
   std::vector<MarkerColumnTriple> markers;
-  std::map<std::string, int> count;
   const size_t width = std::min({types.size(), names.size(), quantities.size(), axes.size()});
   for (size_t k = 0; k + 2 < width; ++k) {
     if (types[k] != "Marker" || quantities[k] != "Position" || axes[k] != "X") continue;
     if (axes[k + 1] != "Y" || axes[k + 2] != "Z") continue;
-    const std::string name(names[k]);
-    const int number = ++count[name];
-    markers.push_back({number == 1 ? name : fmt::format("{} ({})", name, number), k});
+    markers.push_back({std::string(names[k]), k});
   }
   return markers;
 }
@@ -162,6 +159,7 @@ MarkerTracks ReadQualisysTsv(const std::filesystem::path& file, FileTimes use) {
         if (!fields[i].empty()) tracks.names.emplace_back(fields[i]);
   }
   if (tracks.names.empty()) throw InputError({file.string()}, "names no markers (MARKER_NAMES)");
+  NumberRepeatedNames(file, &tracks);
 
   const size_t coordinates = 3 * tracks.names.size();
   size_t before = 0;  // columns in front of the coordinates: none, the frame, or frame and time
@@ -227,6 +225,7 @@ MarkerTracks ReadMotiveCsv(const std::filesystem::path& file, FileTimes use) {
   MarkerTracks tracks;
   tracks.length_unit = UnitOfMotive(pairs);
   for (const MarkerColumnTriple& marker : markers) tracks.names.push_back(marker.name);
+  NumberRepeatedNames(file, &tracks);
   const bool has_time = axes.size() > 1 && BeginsWith(axes[1], "Time");
   std::vector<double> times;
   for (++row; row < lines.size(); ++row) {
@@ -280,6 +279,7 @@ MarkerTracks ReadDeepLabCutCsv(const std::filesystem::path& file) {
                 : "has no columns x, y, z in its row coords");
   MarkerTracks tracks;
   for (const MarkerColumnTriple& marker : markers) tracks.names.push_back(marker.name);
+  NumberRepeatedNames(file, &tracks);
   for (; row < lines.size(); ++row) {
     const std::vector<std::string_view> fields = SplitFields(lines[row], ',');
     if (IsBlank(fields)) continue;

@@ -44,19 +44,14 @@ std::string WithSingleQuotes(std::string_view entry) {
   return text;
 }
 
-// A number with a decimal point or a decimal comma.
-std::optional<double> ParseEntry(std::string_view text) {
-  if (const std::optional<double> value = ParseNumber(text)) return value;
-  std::string with_point(text);
-  const size_t comma = with_point.find(',');
-  if (comma == std::string::npos || with_point.find('.') != std::string::npos) return std::nullopt;
-  with_point[comma] = '.';
-  return ParseNumber(with_point);
-}
-
 bool AreNumbers(const std::vector<std::string_view>& fields) {
   return std::all_of(fields.begin(), fields.end(),
-                     [](std::string_view field) { return ParseEntry(field).has_value(); });
+                     [](std::string_view field) { return ParseDecimal(field).has_value(); });
+}
+
+bool AreEmpty(const std::vector<std::string_view>& fields) {
+  return std::all_of(fields.begin(), fields.end(),
+                     [](std::string_view field) { return field.empty(); });
 }
 
 // `line` without what stands in quotes, or all of it where no delimiter is outside of them.
@@ -70,9 +65,34 @@ std::string OutsideQuotes(std::string_view line) {
   return outside.find_first_of(kDelimiters) == std::string::npos ? std::string(line) : outside;
 }
 
-char FindDelimiter(std::string_view line) {
+// The first line of `rest` that is neither empty nor a comment.
+std::string_view NextRow(std::string_view rest) {
+  while (!rest.empty()) {
+    const size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = Trim(rest.substr(0, end));
+    if (!line.empty() && line.front() != '#') return line;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return rest;
+}
+
+// Whether `delimiter` divides a line of names and the row of numbers below it into as many entries.
+bool DividesAlike(std::string_view names, std::string_view row, char delimiter) {
+  const size_t count = SplitFields(names, delimiter).size();
+  const std::vector<std::string_view> fields = SplitFields(row, delimiter);
+  return count > 1 && fields.size() == count && AreNumbers(fields);
+}
+
+// The delimiter of a table of which `line` is the first line and `rest` what follows it.
+char FindDelimiter(std::string_view line, std::string_view rest) {
   const std::string outside = OutsideQuotes(line);
   const auto has = [&outside](char c) { return outside.find(c) != std::string::npos; };
+  if (has('\t') && (has(';') || has(','))) {
+    // Names may contain the other delimiters, as "Time, s" does.
+    const std::string_view row = NextRow(rest);
+    if (DividesAlike(line, row, '\t') && !DividesAlike(line, row, has(';') ? ';' : ','))
+      return '\t';
+  }
   if (has(';')) return ';';
   if (has(',')) {
     // The commas are decimal ones where tabs or blanks cut the line into numbers.
@@ -90,10 +110,11 @@ bool IsTitle(std::string_view line, std::string_view rest) {
   if (line.find_first_of(kDelimiters) != std::string_view::npos ||
       AreNumbers(SplitFields(line, ' ')))
     return false;
-  const std::string_view next = Trim(rest.substr(0, rest.find('\n')));
+  const size_t end = std::min(rest.find('\n'), rest.size());
+  const std::string_view next = Trim(rest.substr(0, end));
   if (next.find_first_of(kDelimiters) == std::string_view::npos || next.front() == '#')
     return false;
-  return !AreNumbers(SplitFields(next, FindDelimiter(next)));
+  return !AreNumbers(SplitFields(next, FindDelimiter(next, rest.substr(end))));
 }
 
 // Notes a header in which most entries are numbers with decimals: its line may be a row of data of
@@ -102,7 +123,7 @@ void DoubtHeader(DelimitedTable* table, int line) {
   int numbers = 0, decimals = 0, words = 0;
   std::string word;
   for (const std::string& name : table->header) {
-    const std::optional<double> value = ParseEntry(name);
+    const std::optional<double> value = ParseDecimal(name);
     if (!value) word = name;
     words += !value;
     numbers += value && std::isfinite(*value);
@@ -133,7 +154,83 @@ void DoubtFirstRow(DelimitedTable* table) {
       values.cols() > 3 ? ", …" : ""));
 }
 
+// The columns of this name, with regard to the case of its letters or without.
+std::vector<Eigen::Index> ColumnsNamed(const DelimitedTable& table, const std::string& name,
+                                       bool case_counts) {
+  const auto is_same = [case_counts](char a, char b) {
+    if (case_counts) return a == b;
+    return std::tolower(static_cast<unsigned char>(a)) ==
+           std::tolower(static_cast<unsigned char>(b));
+  };
+  std::vector<Eigen::Index> columns;
+  for (size_t column = 0; column < table.header.size(); ++column) {
+    const std::string& other = table.header[column];
+    if (std::equal(name.begin(), name.end(), other.begin(), other.end(), is_same))
+      columns.push_back(static_cast<Eigen::Index>(column));
+  }
+  return columns;
+}
+
+// The only one of `columns`, nothing where there is none.
+std::optional<Eigen::Index> OnlyColumn(const DelimitedTable& table, const std::string& name,
+                                       const std::vector<Eigen::Index>& columns) {
+  if (columns.empty()) return std::nullopt;
+  if (columns.size() > 1)
+    throw InputError(
+        {table.file.string()},
+        fmt::format("has {} columns \"{}\", of which the numbers are {} and {}; rename "
+                    "one of them, or give the number of the one that is meant",
+                    columns.size(), name, columns[0] + 1, columns[1] + 1));
+  return columns.front();
+}
+
 }  // namespace
+
+bool MayBeThousands(std::string_view text) {
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
+  const size_t comma = text.find(',');
+  if (comma == std::string_view::npos || comma < 1 || comma > 3 || text.size() != comma + 4)
+    return false;
+  if (text.front() == '0') return false;
+  return std::all_of(text.begin(), text.end(), [](char c) {
+    return c == ',' || std::isdigit(static_cast<unsigned char>(c)) != 0;
+  });
+}
+
+void DecimalCommas::Add(std::string_view entry, int line, int column) {
+  if (entry.find(',') == std::string_view::npos) {
+    has_point_ = has_point_ || entry.find('.') != std::string_view::npos;
+  } else if (!MayBeThousands(entry)) {
+    is_certain_ = true;
+  } else if (doubtful_.empty()) {
+    doubtful_ = entry;
+    line_ = line;
+    column_ = column;
+  }
+}
+
+void DecimalCommas::RefuseThousands(const std::filesystem::path& file, char delimiter) const {
+  if (doubtful_.empty()) return;
+  if (!has_point_ && (is_certain_ || delimiter != ',')) return;
+  std::string thousands = doubtful_, decimal = doubtful_;
+  thousands.erase(thousands.find(','), 1);
+  decimal[decimal.find(',')] = '.';
+  throw InputError(
+      {file.string(), line_, column_},
+      fmt::format("got \"{}\", which is {} with a separator of thousands and {} with a "
+                  "decimal comma; write the numbers of the file without such commas",
+                  doubtful_, thousands, decimal));
+}
+
+std::optional<char> DeclaredDelimiter(std::string_view line) {
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  if (line.size() == 7 && line.front() == '"' && line.back() == '"') line = line.substr(1, 5);
+  if (line.size() != 5 || (line.substr(0, 4) != "sep=" && line.substr(0, 4) != "SEP="))
+    return std::nullopt;
+  return std::string_view(";,\t| ").find(line[4]) == std::string_view::npos
+             ? std::nullopt
+             : std::optional<char>(line[4]);
+}
 
 std::string_view Trim(std::string_view text) {
   const size_t begin = text.find_first_not_of(kBlanks);
@@ -188,6 +285,24 @@ std::optional<double> ParseNumber(std::string_view text) {
   return value;
 }
 
+std::optional<double> ParseDecimal(std::string_view text) {
+  if (const std::optional<double> value = ParseNumber(text)) return value;
+  std::string with_point(text);
+  const size_t comma = with_point.find(',');
+  if (comma == std::string::npos || with_point.find('.') != std::string::npos) return std::nullopt;
+  with_point[comma] = '.';
+  return ParseNumber(with_point);
+}
+
+ColumnName SplitColumnName(const std::string& header) {
+  const size_t open = header.find_first_of("[(");
+  if (open == std::string::npos) return {header, ""};
+  const size_t end = header.find_last_not_of(' ', open == 0 ? 0 : open - 1);
+  const size_t close = header.find_first_of("])", open);
+  return {open == 0 ? "" : header.substr(0, end + 1),
+          header.substr(open + 1, close == std::string::npos ? close : close - open - 1)};
+}
+
 std::string ReadFilledFile(const std::filesystem::path& file) {
   std::string content = ReadWholeFile(file);
   if (content.empty()) throw InputError({file.string()}, "is empty");
@@ -209,11 +324,29 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
   char delimiter = 0;
   int line_number = 0;
   std::string_view comment;  // the last above the first row
+  DecimalCommas commas;
+  struct EmptyRow {
+    int line;
+    size_t width;
+  };
+  std::vector<EmptyRow> empty_rows;  // those that no other row has followed so far
+  const auto check_width = [&](int line, size_t entry_count) {
+    if (entry_count == width) return;
+    const bool may_be_decimal = delimiter == ',' && entry_count == 2 * width;
+    throw InputError(
+        {file.string(), line, 1},
+        fmt::format("has {} entries where the first line has {}{}", entry_count, width,
+                    may_be_decimal ? "; decimal commas need another delimiter, such as ;" : ""));
+  };
   for (size_t at = 0; at < content.size();) {
     const size_t end = std::min(content.find('\n', at), content.size());
     const std::string_view line(content.data() + at, end - at);
     at = end + 1;
     ++line_number;
+    if (const auto declared = DeclaredDelimiter(line); declared && line_number == 1) {
+      delimiter = *declared;
+      continue;
+    }
     if (Trim(line).empty()) continue;
     if (Trim(line).front() == '#') {
       if (width > 0) continue;
@@ -232,7 +365,9 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
     if (delimiter == 0 &&
         IsTitle(Trim(line), std::string_view(content).substr(std::min(at, content.size()))))
       continue;
-    if (delimiter == 0) delimiter = FindDelimiter(Trim(line));
+    if (delimiter == 0)
+      delimiter =
+          FindDelimiter(Trim(line), std::string_view(content).substr(std::min(at, content.size())));
     const std::vector<std::string_view> fields = SplitFields(line, delimiter);
     if (width == 0) {
       width = fields.size();
@@ -247,25 +382,30 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
         continue;
       }
     }
-    if (fields.size() != width) {
-      const bool may_be_decimal = delimiter == ',' && fields.size() == 2 * width;
-      throw InputError(
-          {file.string(), line_number, 1},
-          fmt::format("has {} entries where the first line has {}{}", fields.size(), width,
-                      may_be_decimal ? "; decimal commas need another delimiter, such as ;" : ""));
+    if (AreEmpty(fields)) {
+      empty_rows.push_back({line_number, fields.size()});
+      continue;
     }
+    for (const EmptyRow& empty : empty_rows) {
+      check_width(empty.line, empty.width);
+      entries.insert(entries.end(), width, std::numeric_limits<double>::quiet_NaN());
+      table.line.push_back(empty.line);
+    }
+    empty_rows.clear();
+    check_width(line_number, fields.size());
     for (const std::string_view field : fields) {
-      const std::optional<double> value = ParseEntry(field);
-      if (!value) {
-        const int column = static_cast<int>(field.data() - line.data()) + 1;
+      const int column = static_cast<int>(field.data() - line.data()) + 1;
+      const std::optional<double> value = ParseDecimal(field);
+      if (!value)
         throw InputError({file.string(), line_number, column},
                          fmt::format("got \"{}\"; expected a number", field));
-      }
+      commas.Add(field, line_number, column);
       entries.push_back(*value);
     }
     table.line.push_back(line_number);
   }
   if (table.line.empty()) throw InputError({file.string()}, "holds no row of numbers");
+  commas.RefuseThousands(file, delimiter);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   table.values = Eigen::Map<const RowMajor>(entries.data(), table.line.size(), width);
   DoubtFirstRow(&table);
@@ -273,27 +413,15 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
 }
 
 std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::string& name) {
-  for (size_t column = 0; column < table.header.size(); ++column) {
-    if (table.header[column] == name) return column;
-  }
+  const std::vector<Eigen::Index> same = ColumnsNamed(table, name, /*case_counts=*/true);
+  if (!same.empty()) return OnlyColumn(table, name, same);
   int number = 0;
   const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), number);
   if (problem == std::errc() && end == name.data() + name.size() && number >= 1 &&
       number <= table.values.cols()) {
     return number - 1;
   }
-  const auto is_same_letter = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) ==
-           std::tolower(static_cast<unsigned char>(b));
-  };
-  std::optional<Eigen::Index> similar;
-  for (size_t column = 0; column < table.header.size(); ++column) {
-    const std::string& other = table.header[column];
-    if (!std::equal(name.begin(), name.end(), other.begin(), other.end(), is_same_letter)) continue;
-    if (similar) return std::nullopt;
-    similar = column;
-  }
-  return similar;
+  return OnlyColumn(table, name, ColumnsNamed(table, name, /*case_counts=*/false));
 }
 
 Eigen::Index RequireColumn(const DelimitedTable& table, const std::string& name) {

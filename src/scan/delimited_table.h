@@ -12,13 +12,16 @@
 namespace lacuna {
 
 // Lines starting with '#', empty lines and, above the table, lines starting with "***" are skipped,
-// and the stage of GOM software, a table of its own (kStageHeader).
+// and the stage of GOM software, a table of its own (kStageHeader). Rows at the end of the table
+// whose entries are all empty, as spreadsheet programs leave them, are no rows.
 // A first line that is a title is skipped, too: one without delimiter above a line of names with
 // delimiters. The first line is the header when one of its entries is neither a number nor empty.
-// The delimiter is the first of ';', ',' and tab that occurs in the first line outside of quotes,
-// and otherwise any run of blanks. Where the delimiter is not ',', and in quotes, numbers may have
-// a decimal comma. Two quotes in the quotes of a name stand for one. A byte order mark is not part
-// of the first entry (ReadTextFile).
+// The delimiter is the one that a first line "sep=;" declares, and otherwise the first of ';', ','
+// and tab that occurs in the first line outside of quotes, or else any run of blanks; a tab comes
+// first where it alone divides the line of names and the row below into as many entries. Where the
+// delimiter is not ',', and in quotes, numbers may have a decimal comma (DecimalCommas). Two quotes
+// in the quotes of a name stand for one. A byte order mark is not part of the first entry
+// (ReadTextFile).
 inline constexpr std::string_view kStageHeader = "stage;index;relative_time;date";
 
 struct DelimitedTable {
@@ -34,16 +37,48 @@ struct DelimitedTable {
 };
 
 // Throws InputError at file:line:column when the file is absent or empty, an entry is not a number
-// or a row does not have as many entries as the first.
+// or may have a separator of thousands, or a row does not have as many entries as the first.
 DelimitedTable ReadDelimitedTable(const std::filesystem::path& file);
 
 // The column called `name` or, when the header has no such name, the column with the number `name`
 // counted from 1, or else the only column whose name differs in the case of its letters alone.
-// Returns its index from 0, or nothing when there is no such column.
+// Returns its index from 0, or nothing when there is no such column. Throws InputError naming the
+// table when several columns have this name.
 std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::string& name);
 
 // The same, but throws InputError listing the columns of the table when there is no such column.
 Eigen::Index RequireColumn(const DelimitedTable& table, const std::string& name);
+
+// The name of a column, and the unit behind it in brackets or parentheses: "Force" and "kN" of
+// "Force [kN]". The unit is empty where there is none.
+struct ColumnName {
+  std::string name, unit;
+};
+ColumnName SplitColumnName(const std::string& header);
+
+// Whether the comma in a number may as well separate thousands: in "1,005", but not in "0,500" or
+// "1,5".
+bool MayBeThousands(std::string_view text);
+
+// Whether the commas in the numbers of one file are decimal ones. "1,005" may also be a thousand
+// and five. Its comma is taken for a decimal one if no number of the file has a decimal point and,
+// where ',' is also the delimiter, another number has a comma that cannot separate thousands, such
+// as "1,5".
+class DecimalCommas {
+ public:
+  // `line` and `column` of the entry in the file, from 1.
+  void Add(std::string_view entry, int line, int column);
+  // Throws InputError at the first entry in doubt, with both of its meanings.
+  void RefuseThousands(const std::filesystem::path& file, char delimiter) const;
+
+ private:
+  bool has_point_ = false, is_certain_ = false;
+  std::string doubtful_;  // the first such entry; empty: there is none
+  int line_ = 0, column_ = 0;
+};
+
+// The delimiter that a line such as "sep=;" declares, with which spreadsheet programs begin a file.
+std::optional<char> DeclaredDelimiter(std::string_view line);
 
 // Without blanks, tabs and line ends at both ends.
 std::string_view Trim(std::string_view text);
@@ -58,6 +93,9 @@ std::vector<std::string_view> SplitFields(std::string_view line, char delimiter)
 // The number that `text` consists of (NaN for an empty text and for "nan"), or nothing when it is
 // not a number.
 std::optional<double> ParseNumber(std::string_view text);
+
+// The same for a number with a decimal point or a decimal comma.
+std::optional<double> ParseDecimal(std::string_view text);
 
 // The content of a file: all of its bytes, or its text (ReadTextFile). Throw InputError when it
 // cannot be read or is empty.

@@ -70,6 +70,17 @@ std::string FormatPose(const Eigen::Isometry3d& pose) {
   return fmt::format("[{}]", fmt::join(rows.data(), rows.data() + 16, ", "));
 }
 
+// The intrinsics of a camera belong to one size of its images.
+void RequireSize(const DepthImage& depth, const std::filesystem::path& file,
+                 const std::filesystem::path& first) {
+  const Eigen::Vector2i size = DepthPngSize(first);
+  if (depth.cols() == size[0] && depth.rows() == size[1]) return;
+  throw InputError({file.string()},
+                   fmt::format("has {} × {} pixels where {} of the same camera has {} × {}; the "
+                               "intrinsics belong to one size",
+                               depth.cols(), depth.rows(), first.string(), size[0], size[1]));
+}
+
 std::string FormatDepthFrames(size_t count, const VirtualScan& scan) {
   std::string yaml =
       fmt::format("  kind: depth\n  depth_unit: {} m\n  cameras:\n", scan.options.quantum);
@@ -114,7 +125,9 @@ void LoadPoints(const DepthFrames& source, Frame* frame) {
   Eigen::Index total = 0;
   for (size_t c = 0; c < count; ++c) {
     const Camera& camera = source.cameras[c];
-    const DepthImage depth = ReadDepthPng(source.files[frame->index][c], source.depth_unit);
+    const std::filesystem::path& file = source.files[frame->index][c];
+    const DepthImage depth = ReadDepthPng(file, source.depth_unit);
+    if (frame->index > 0) RequireSize(depth, file, source.files[0][c]);
     views[c] = BackProject(depth, camera, source.min_depth, source.max_depth);
     frame->sensors.positions.col(c) = camera.world_from_camera.translation();
     frame->row_count += (depth.array() > 0).count();

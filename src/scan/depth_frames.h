@@ -36,7 +36,7 @@ struct DepthFrames : FileFrames {
 void ReadSource(const Config& frames, const DataLocation& data, DepthFrames* source,
                 std::vector<std::string>* warnings);
 // The points of all cameras, one camera after the other; `sensors.seen_by` says which camera saw
-// each point.
+// each point. Throws InputError when an image has another size than the first of its camera.
 void LoadPoints(const DepthFrames& source, Frame* frame);
 // Aligns the cameras to one another by the first frame (camera_alignment.h) where `alignment` is
 // set. Warns of each camera whose pose could not be refined.

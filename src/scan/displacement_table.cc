@@ -40,19 +40,6 @@ const std::set<double> kSucceeded = {0, 1, 2, 3, 4, 6, 15, 18, 26};
 // A status that is missing is NaN, which the set takes for equal to any of its numbers.
 bool HasSucceeded(double status) { return !std::isnan(status) && kSucceeded.count(status) > 0; }
 
-// A name of a column without its unit, and the unit in brackets.
-struct NameAndUnit {
-  std::string name, unit;
-};
-NameAndUnit Separate(const std::string& header) {
-  const size_t open = header.find_first_of("[(");
-  if (open == std::string::npos) return {header, ""};
-  const size_t end = header.find_last_not_of(' ', open == 0 ? 0 : open - 1);
-  const size_t close = header.find_first_of("])", open);
-  return {open == 0 ? "" : header.substr(0, end + 1),
-          header.substr(open + 1, close == std::string::npos ? close : close - open - 1)};
-}
-
 std::string InLowerCase(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
@@ -62,7 +49,7 @@ std::string InLowerCase(std::string text) {
 std::optional<Eigen::Index> Find(const std::vector<std::string>& header, const std::string& name) {
   std::optional<Eigen::Index> similar;
   for (size_t k = 0; k < header.size(); ++k) {
-    const std::string other = Separate(header[k]).name;
+    const std::string other = SplitColumnName(header[k]).name;
     if (other == name) return static_cast<Eigen::Index>(k);
     if (InLowerCase(other) != InLowerCase(name)) continue;
     if (similar) return std::nullopt;
@@ -82,27 +69,16 @@ std::optional<std::array<Eigen::Index, 3>> FindAll(const std::vector<std::string
   return columns;
 }
 
-std::string UnitOf(const DelimitedTable& table, const DisplacementColumns& columns) {
-  std::string unit;
-  for (const auto& part : {columns.place, columns.displacement})
-    for (const Eigen::Index k : part) {
-      const std::string own = Separate(table.header[static_cast<size_t>(k)]).unit;
-      if (unit.empty()) unit = own;
-      if (own.empty() || own == unit) continue;
+// Throws where another column has the same name, be it in another unit.
+void RefuseTwins(const DelimitedTable& table, const std::vector<std::string>& header,
+                 Eigen::Index column) {
+  const size_t own = static_cast<size_t>(column);
+  for (size_t k = 0; k < header.size(); ++k)
+    if (k != own && SplitColumnName(header[k]).name == SplitColumnName(header[own]).name)
       throw InputError({table.file.string()},
-                       fmt::format("gives \"{}\" beside columns in {}; places and displacements "
-                                   "must have one unit",
-                                   table.header[static_cast<size_t>(k)], unit));
-    }
-  if (!unit.empty()) return unit;
-  // GOM: "Units: length:mm angle:deg time:s".
-  for (const std::string& comment : table.comments) {
-    const size_t at = comment.rfind("Units:", 0) == 0 ? comment.find("length:") : std::string::npos;
-    if (at == std::string::npos) continue;
-    const size_t from = at + std::string("length:").size();
-    return comment.substr(from, comment.find(' ', from) - from);
-  }
-  return unit;
+                       fmt::format("has the columns \"{}\" and \"{}\", of which the numbers are {} "
+                                   "and {}; rename one of them, or name the columns with `columns`",
+                                   header[own], header[k], own + 1, k + 1));
 }
 
 std::optional<DisplacementColumns> FindIn(const DelimitedTable& table,
@@ -120,6 +96,10 @@ std::optional<DisplacementColumns> FindIn(const DelimitedTable& table,
     // ARAMIS writes "ID", and older exports "ID,ID".
     for (const char* name : {"id", "id,id", "index"})
       if (!columns.id) columns.id = Find(header, name);
+    for (const auto& part : {columns.place, columns.displacement})
+      for (const Eigen::Index k : part) RefuseTwins(table, header, k);
+    for (const auto& k : {columns.sigma, columns.status, columns.id})
+      if (k) RefuseTwins(table, header, *k);
     columns.has_common_names = InLowerCase(known.displacement[0]) == "u" &&
                                InLowerCase(known.place[0]) == "x" && !columns.sigma;
     columns.places_are_deformed = std::string(known.displacement[0]) == kBesideDeformed;
@@ -144,8 +124,31 @@ std::optional<DisplacementColumns> FindDisplacementColumns(DelimitedTable* table
       FindIn(*table, has_header ? table->header : table->commented_header);
   if (!columns) return std::nullopt;
   if (!has_header) table->header = table->commented_header;
-  columns->length_unit = UnitOf(*table, *columns);
+  columns->length_unit = LengthUnitOf(*table, *columns);
   return columns;
+}
+
+std::string LengthUnitOf(const DelimitedTable& table, const DisplacementColumns& columns) {
+  std::string unit;
+  for (const auto& part : {columns.place, columns.displacement})
+    for (const Eigen::Index k : part) {
+      const std::string own = SplitColumnName(table.header[static_cast<size_t>(k)]).unit;
+      if (unit.empty()) unit = own;
+      if (own.empty() || own == unit) continue;
+      throw InputError({table.file.string()},
+                       fmt::format("gives \"{}\" beside columns in {}; places and displacements "
+                                   "must have one unit",
+                                   table.header[static_cast<size_t>(k)], unit));
+    }
+  if (!unit.empty()) return unit;
+  // GOM: "Units: length:mm angle:deg time:s".
+  for (const std::string& comment : table.comments) {
+    const size_t at = comment.rfind("Units:", 0) == 0 ? comment.find("length:") : std::string::npos;
+    if (at == std::string::npos) continue;
+    const size_t from = at + std::string("length:").size();
+    return comment.substr(from, comment.find(' ', from) - from);
+  }
+  return unit;
 }
 
 Eigen::Matrix3Xd PointsOf(const DelimitedTable& table, const std::array<Eigen::Index, 3>& columns) {

@@ -41,9 +41,14 @@ struct DisplacementColumns {
 // The columns of a table of image correlation, or nothing where no names of displacements are in
 // the header. Where the table has no header, but the comment above its first row names such
 // columns, that comment becomes the header. Throws InputError, naming the file, when displacements
-// are given in the plane only, since the motion out of the plane is then unknown, and when places
-// and displacements have different units.
+// are given in the plane only, since the motion out of the plane is then unknown, when places and
+// displacements have different units, and when two columns have a name that is used.
 std::optional<DisplacementColumns> FindDisplacementColumns(DelimitedTable* table);
+
+// The unit of places and displacements: in brackets in the names of their columns, or else in the
+// comments. Empty where there is none. The table has names. Throws InputError when two units
+// differ.
+std::string LengthUnitOf(const DelimitedTable& table, const DisplacementColumns& columns);
 
 // Columns as points: 3 × rows.
 Eigen::Matrix3Xd PointsOf(const DelimitedTable& table, const std::array<Eigen::Index, 3>& columns);

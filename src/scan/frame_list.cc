@@ -114,10 +114,17 @@ std::optional<long> FindMissingNumber(const std::vector<std::string>& sorted_nam
   }
   long step = numbers[1] - numbers[0];
   for (size_t i = 1; i < numbers.size(); ++i) step = std::min(step, numbers[i] - numbers[i - 1]);
-  for (size_t i = 1; i < numbers.size() && step > 0; ++i) {
-    if (numbers[i] - numbers[i - 1] != step) return numbers[i - 1] + step;
+  if (step <= 0) return std::nullopt;
+  // Other numbers, such as times at which the frames were taken, are not evenly spaced.
+  std::optional<long> missing;
+  size_t steps = 0;
+  for (size_t i = 1; i < numbers.size(); ++i) {
+    const long difference = numbers[i] - numbers[i - 1];
+    if (difference % step != 0) return std::nullopt;
+    if (difference == step) ++steps;
+    if (difference != step && !missing) missing = numbers[i - 1] + step;
   }
-  return std::nullopt;
+  return 2 * steps >= numbers.size() - 1 ? missing : std::nullopt;
 }
 
 std::vector<std::filesystem::path> ReadFrameFiles(const Config& config,

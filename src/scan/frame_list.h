@@ -14,9 +14,9 @@ namespace lacuna {
 // Reads either `files` (a list, or one text with the wildcards * and ?; other characters, and those
 // of `data_folder`, stand for themselves) or `pattern`
 // ("frames/points_%02d.csv") with `first` and `count`. Names that match wildcards are sorted by the
-// numbers in them (scan_9 before scan_10); a gap in evenly spaced numbers means that a frame is
-// missing. Throws InputError (file, line, column and field) when a frame is missing, when a file
-// does not exist, and when both or neither of the two ways are used.
+// numbers in them (scan_9 before scan_10); a gap in evenly spaced numbers (FindMissingNumber) means
+// that a frame is missing. Throws InputError (file, line, column and field) when a frame is
+// missing, when a file does not exist, and when both or neither of the two ways are used.
 std::vector<std::filesystem::path> ReadFrameFiles(const Config& config,
                                                   const std::filesystem::path& data_folder);
 
@@ -32,7 +32,9 @@ std::string FillPattern(const std::string& pattern, int number);
 bool NaturalLess(const std::string& a, const std::string& b);
 
 // The number that is missing from names that differ in one evenly spaced number ("a1", "a2", "a4"
-// → 3), or nothing when none is missing or the names are not of this form.
+// → 3), or nothing when none is missing or the names are not of this form. Numbers are evenly
+// spaced where at least half of their differences equal the smallest one and the others are
+// multiples of it; times at which frames were taken usually are not.
 std::optional<long> FindMissingNumber(const std::vector<std::string>& sorted_names);
 
 }  // namespace lacuna

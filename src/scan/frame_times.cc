@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scan/delimited_table.h"
+#include "scan/time_series.h"
 
 namespace lacuna {
 namespace {
@@ -24,9 +25,10 @@ std::vector<double> ReadTimesFile(const Config& config, const std::filesystem::p
   const DelimitedTable table = ReadDelimitedTable(file);
   const double unit =
       config.Choice<double>("unit", {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}}, "s");
-  const Eigen::VectorXd column =
-      unit * table.values.col(RequireColumn(table, config.Text("column", "1")));
-  return {column.begin(), column.end()};
+  const Eigen::Index column = RequireColumn(table, config.Text("column", "1"));
+  RefuseOtherUnit(table, column, unit, kTime, "unit");
+  const Eigen::VectorXd times = unit * table.values.col(column);
+  return {times.begin(), times.end()};
 }
 
 std::vector<double> ReadTimes(const Config& frames, size_t count,
@@ -54,7 +56,11 @@ std::vector<double> ReadTimes(const Config& frames, size_t count,
   } else if (count == 1) {
     times = {0};
   } else {
-    frames.Fail("", "no times are given: add rate, times or times_file");
+    // One file of all frames, of markers or of steps, may contain the times.
+    frames.Fail("", fmt::format("no times are given: add rate, times or times_file{}",
+                                frames.Has("file") ? ", or `columns: {time: NAME}` with the name "
+                                                     "of a column of the file"
+                                                   : ""));
   }
   if (times.size() != count) {
     frames.Fail(key, fmt::format("{} times for {} frames", times.size(), count));

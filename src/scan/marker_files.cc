@@ -4,26 +4,49 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "scan/capture_tables.h"
 #include "scan/delimited_table.h"
+#include "scan/time_series.h"
 
 namespace lacuna {
 namespace {
 
-// The marker's name in `column` when it fits the pattern with its one star; empty otherwise.
-std::string MatchStar(const std::string& column, const std::string& pattern) {
+// The marker's name in `column` when it fits the pattern with its one star, with regard to the case
+// of letters or without; empty otherwise.
+std::string MatchStar(const std::string& column, const std::string& pattern, bool case_counts) {
   const size_t star = pattern.find('*');
   const std::string before = pattern.substr(0, star);
   const std::string after = pattern.substr(star + 1);
   if (column.size() <= before.size() + after.size()) return "";
-  if (column.rfind(before, 0) != 0) return "";
-  if (column.substr(column.size() - after.size()) != after) return "";
+  const auto is_same = [case_counts](char a, char b) {
+    if (case_counts) return a == b;
+    return std::tolower(static_cast<unsigned char>(a)) ==
+           std::tolower(static_cast<unsigned char>(b));
+  };
+  if (!std::equal(before.begin(), before.end(), column.begin(), is_same)) return "";
+  if (!std::equal(after.rbegin(), after.rend(), column.rbegin(), is_same)) return "";
   return column.substr(before.size(), column.size() - before.size() - after.size());
+}
+
+// The names of the markers whose columns fit the pattern; in any case where none fits exactly.
+std::vector<std::string> NamesIn(const DelimitedTable& table, const std::string& pattern) {
+  std::vector<std::string> names;
+  for (const bool case_counts : {true, false}) {
+    for (const std::string& column : table.header) {
+      std::string name = MatchStar(column, pattern, case_counts);
+      if (!name.empty()) names.push_back(std::move(name));
+    }
+    if (!names.empty()) break;
+  }
+  return names;
 }
 
 std::string FillStar(std::string pattern, const std::string& name) {
@@ -57,7 +80,7 @@ TrcHeader ReadTrcHeader(const std::filesystem::path& file,
     if (keys[i] == "NumFrames") header.frame_count = whole_number(keys[i], values[i]);
     if (keys[i] == "NumMarkers") header.marker_count = whole_number(keys[i], values[i]);
     if (keys[i] == "Units") header.unit = values[i];
-    if (keys[i] == "DataRate") header.rate = ParseNumber(values[i]).value_or(0);
+    if (keys[i] == "DataRate") header.rate = ParseDecimal(values[i]).value_or(0);
   }
   if (header.frame_count == 0 || header.marker_count == 0) {
     throw InputError({file.string(), 2, 1}, "NumFrames or NumMarkers is missing");
@@ -91,14 +114,25 @@ MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumn
   const DelimitedTable table = ReadDelimitedTable(file);
   MarkerTracks tracks;
   tracks.warnings = table.notes;
-  for (const std::string& column : table.header) {
-    const std::string name = MatchStar(column, columns.x);
-    if (!name.empty()) tracks.names.push_back(name);
+  if (table.header.empty()) {
+    throw InputError(
+        {file.string(), table.line.front(), 1},
+        fmt::format("has no line with the names of the columns, such as {} for a marker "
+                    "\"tip\", above its numbers",
+                    FillStar(columns.x, "tip")));
   }
+  tracks.names = NamesIn(table, columns.x);
   if (tracks.names.empty()) {
     throw InputError({file.string(), 1, 1},
                      fmt::format("no column is named like \"{}\"; its columns are {}", columns.x,
                                  fmt::join(table.header, ", ")));
+  }
+  std::set<std::string> seen;
+  for (const std::string& name : tracks.names) {
+    if (!seen.insert(name).second)
+      throw InputError({file.string(), 1, 1},
+                       fmt::format("has several columns \"{}\"; rename the marker of one of them",
+                                   FillStar(columns.x, name)));
   }
   const Eigen::Index frame_count = table.values.rows();
   tracks.positions.assign(frame_count, Eigen::Matrix3Xd(3, tracks.names.size()));
@@ -115,7 +149,8 @@ MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumn
   if (!columns.time.empty()) {
     const Eigen::Index time = RequireColumn(table, columns.time);
     if (times == FileTimes::kUsed) {
-      tracks.times = table.values.col(time);
+      RefuseOtherUnit(table, time, columns.time_unit, kTime, "time_unit");
+      tracks.times = columns.time_unit * table.values.col(time);
       CheckTimes(file, tracks.times, 0);
     }
   }
@@ -136,8 +171,10 @@ MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes use) {
     throw InputError({file.string(), 4, 1}, fmt::format("names {} markers where NumMarkers says {}",
                                                         tracks.names.size(), header.marker_count));
   }
+  NumberRepeatedNames(file, &tracks);
   constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> times;
+  DecimalCommas commas;
   for (size_t row = 5; row < lines.size(); ++row) {
     const std::vector<std::string_view> fields = SplitFields(lines[row], '\t');
     if (std::all_of(fields.begin(), fields.end(), [](auto field) { return field.empty(); })) {
@@ -154,17 +191,18 @@ MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes use) {
     }
     Eigen::Matrix3Xd positions = Eigen::Matrix3Xd::Constant(3, tracks.names.size(), kUnseen);
     for (size_t i = 1; i < std::min(expected, fields.size()); ++i) {
-      const std::optional<double> value = ParseNumber(fields[i]);
-      if (!value) {
-        const int column = static_cast<int>(fields[i].data() - lines[row].data()) + 1;
+      const int column = static_cast<int>(fields[i].data() - lines[row].data()) + 1;
+      const std::optional<double> value = ParseDecimal(fields[i]);
+      if (!value)
         throw InputError({file.string(), line_number, column},
                          fmt::format("got \"{}\"; expected a number", fields[i]));
-      }
+      commas.Add(fields[i], line_number, column);
       if (i == 1) times.push_back(*value);
       if (i >= 2) positions((i - 2) % 3, (i - 2) / 3) = *value;
     }
     tracks.positions.push_back(std::move(positions));
   }
+  commas.RefuseThousands(file, '\t');
   if (static_cast<Eigen::Index>(times.size()) != header.frame_count) {
     throw InputError({file.string()}, fmt::format("holds {} frames where NumFrames says {}",
                                                   times.size(), header.frame_count));

@@ -14,13 +14,17 @@
 #include "core/quoted_text.h"
 #include "scan/frame_points.h"
 #include "scan/marker_files.h"
+#include "scan/time_series.h"
 
 namespace lacuna {
 namespace {
 
 MarkerColumns ReadMarkerColumns(const Config& frames) {
   MarkerColumns columns;
+  columns.time_unit = ReadUnit(frames, "time_unit", kTime, "s");
   const std::optional<Config> map = frames.OptionalChild("columns");
+  if (frames.Has("time_unit") && !(map && map->Has("time")))
+    frames.Fail("time_unit", "belongs to a column that `columns: {time: …}` names");
   if (!map) return columns;
   columns.time = map->Text("time", "");
   columns.x = map->Text("x", columns.x);
@@ -47,6 +51,24 @@ Eigen::Matrix3Xd ReadPlaces(const Config& frames, const std::vector<std::string>
     place = item.Vector("position", kLength);
   }
   return places;
+}
+
+// A warning about markers at exactly (0, 0, 0), which some programs write for "not seen"; empty
+// where there are none.
+std::string DoubtOfZeros(const MarkerTracks& tracks, const std::filesystem::path& file) {
+  std::vector<std::string> doubtful;
+  for (size_t m = 0; m < tracks.names.size(); ++m) {
+    const auto count = std::count_if(tracks.positions.begin(), tracks.positions.end(),
+                                     [m](const Eigen::Matrix3Xd& positions) {
+                                       return positions.col(static_cast<Eigen::Index>(m)).isZero(0);
+                                     });
+    if (count > 0) doubtful.push_back(fmt::format("{} in {}", tracks.names[m], count));
+  }
+  if (doubtful.empty()) return "";
+  return fmt::format(
+      "{}: markers are at exactly (0, 0, 0), which counts as a measured place: {} of {} frames; "
+      "where it means that a marker was not seen, leave its entries empty",
+      file.string(), fmt::join(doubtful, ", "), tracks.positions.size());
 }
 
 void CheckDistances(const MarkerFrames& source, int frame, const Eigen::Matrix3Xd& positions) {
@@ -81,7 +103,13 @@ void ReadSource(const Config& frames, const DataLocation& data, MarkerFrames* so
                                     has_times ? FileTimes::kReplaced : FileTimes::kUsed);
   warnings->insert(warnings->end(), source->tracks.warnings.begin(), source->tracks.warnings.end());
   const std::vector<std::string> names = frames.Texts("markers");
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (std::find(names.begin(), names.begin() + i, names[i]) != names.begin() + i)
+      frames.Fail("markers", fmt::format("lists {} twice", names[i]));
+  }
   if (!names.empty()) source->tracks = SelectMarkers(source->tracks, names, source->file);
+  const std::string doubt = DoubtOfZeros(source->tracks, source->file);
+  if (!doubt.empty()) warnings->push_back(doubt);
   source->places = ReadPlaces(frames, source->tracks.names);
   const std::string& unit = source->tracks.length_unit;
   if (!unit.empty() && unit != data.length_unit) {

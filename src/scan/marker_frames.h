@@ -31,7 +31,8 @@ struct MarkerFrames {
   Eigen::Matrix3Xd places;     // 3 × markers, m, on the undeformed object; NaN where not given
 };
 
-// Warns when the file gives another length unit than recording.yaml.
+// Warns when the file gives another length unit than recording.yaml, and of markers at exactly
+// (0, 0, 0).
 void ReadSource(const Config& frames, const DataLocation& data, MarkerFrames* source,
                 std::vector<std::string>* warnings);
 // Throws InputError when a marker lies so far from the origin that its position is no measurement.

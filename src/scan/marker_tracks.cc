@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "core/error.h"
 
@@ -26,6 +28,25 @@ void CheckTimes(const std::filesystem::path& file, const Eigen::VectorXd& times,
                       is_equal ? ", perhaps because it was rounded" : "", remedy));
     }
   }
+}
+
+void NumberRepeatedNames(const std::filesystem::path& file, MarkerTracks* tracks) {
+  std::set<std::string> used(tracks->names.begin(), tracks->names.end());
+  if (used.size() == tracks->names.size()) return;
+  std::map<std::string, int> count;
+  std::vector<std::string> repeated;
+  for (std::string& name : tracks->names) {
+    const std::string own = name;
+    int number = ++count[own];
+    if (number == 1) continue;
+    if (number == 2) repeated.push_back(own);
+    while (!used.insert(fmt::format("{} ({})", own, number)).second) ++number;
+    name = fmt::format("{} ({})", own, number);
+  }
+  tracks->warnings.push_back(fmt::format(
+      "{}: several markers are called {}; all but the first of them have a number behind "
+      "their names, such as \"{} (2)\"",
+      file.string(), fmt::join(repeated, ", "), repeated.front()));
 }
 
 MarkerTracks SelectMarkers(const MarkerTracks& tracks, const std::vector<std::string>& names,

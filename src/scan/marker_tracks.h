@@ -36,6 +36,10 @@ enum class FileTimes { kUsed, kReplaced };
 // `rate`: Hz, that the file states; 0 if it states none.
 void CheckTimes(const std::filesystem::path& file, const Eigen::VectorXd& times, double rate);
 
+// Makes the names of the markers unique: "a" that occurs again becomes "a (2)". Appends to the
+// warnings which names of `file` occur several times.
+void NumberRepeatedNames(const std::filesystem::path& file, MarkerTracks* tracks);
+
 // The tracks of the markers `names`, in that order. Throws InputError naming `file` and listing its
 // markers when one of them does not exist.
 MarkerTracks SelectMarkers(const MarkerTracks& tracks, const std::vector<std::string>& names,

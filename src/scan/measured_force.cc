@@ -26,7 +26,7 @@ std::vector<MeasuredForce> ReadForces(const Config& config, const DataLocation& 
       force.times = Eigen::VectorXd::Constant(1, first_time);
     } else {
       const double unit = ReadUnit(item, "unit", kForce, "N");
-      const TimeSeries series = ReadTimeSeries(item, data, frames, unit);
+      const TimeSeries series = ReadTimeSeries(item, data, frames, unit, kForce, "unit");
       force.file = series.table.file;
       force.times = series.times;
       force.forces = series.values;

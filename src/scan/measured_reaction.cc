@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scan/time_series.h"
+#include "scan/time_span.h"
 #include "scan/yaml_format.h"
 
 namespace lacuna {
@@ -51,9 +52,11 @@ MeasuredReaction ReadReaction(const Config& item, const DataLocation& data, cons
   reaction.sign_is_unknown = sign == 0;
   const double unit = ReadUnit(item, "unit", dimension, reaction.Unit());
   TimeSeries series = ReadColumns(item, data, frames, columns, sign < 0 ? -unit : unit);
+  RefuseOtherUnits(series.table, columns, unit, dimension, "unit");
   reaction.times = std::move(series.times);
   reaction.values = std::move(series.values);
   reaction.file = series.table.file;
+  reaction.time_margin = TimeMargin(frames.times);
   reaction.deviation = item.Quantity("deviation", dimension, kPositive, 0);
   reaction.tare_deviation = item.Quantity("tare_deviation", dimension, kNotNegative, 0);
   reaction.delay_deviation = item.Quantity("delay_deviation", kTime, kNotNegative, 0);
@@ -64,11 +67,7 @@ MeasuredReaction ReadReaction(const Config& item, const DataLocation& data, cons
 }  // namespace
 
 bool MeasuredReaction::Covers(double time) const {
-  // A frame at the same time as the first or last value may differ from it by rounding.
-  constexpr double kRounding = 1e-9;
-  const double first = times[0], last = times[times.size() - 1];
-  const double margin = kRounding * (last - first);
-  return time >= first - margin && time <= last + margin;
+  return CoversTimes(times, time, time, time_margin);
 }
 
 Eigen::VectorXd ReadingAt(const MeasuredReaction& reaction, double time) {

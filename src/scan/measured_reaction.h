@@ -44,6 +44,7 @@ struct MeasuredReaction {
   // Whether the reading may also be that of the opposite force. Both signs are equally probable
   // before the data.
   bool sign_is_unknown = false;
+  double time_margin = 0;  // s, by which a frame may lie before the first value or after the last
   std::filesystem::path file;
 
   int Components() const { return static_cast<int>(directions.cols()); }

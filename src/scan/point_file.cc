@@ -12,12 +12,14 @@
 #include <cstring>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/quantity.h"
 #include "geometry/ply_header.h"
 #include "scan/delimited_table.h"
 #include "scan/displacement_table.h"
@@ -162,6 +164,17 @@ bool AreUnitVectors(const Eigen::Matrix3Xd& vectors) {
   return ((vectors.colwise().norm().array() - 1).abs() < kRounding).all();
 }
 
+// The unit of length in the name of a column; empty where its brackets hold another remark.
+std::string LengthUnitIn(const DelimitedTable& table, Eigen::Index column) {
+  std::string unit = SplitColumnName(table.header[static_cast<size_t>(column)]).unit;
+  try {
+    ParseQuantity("1 " + unit, kLength);
+  } catch (const std::invalid_argument&) {
+    return "";
+  }
+  return unit;
+}
+
 // The columns of a table of image correlation that the user or the header names.
 std::optional<DisplacementColumns> DisplacementsOf(const PointColumns& columns,
                                                    DelimitedTable* table) {
@@ -174,6 +187,9 @@ std::optional<DisplacementColumns> DisplacementsOf(const PointColumns& columns,
   }
   chosen.places_are_deformed = columns.positions_are_deformed;
   if (!columns.sigma.empty()) chosen.sigma = RequireColumn(*table, columns.sigma);
+  if (!table->header.empty() && !LengthUnitIn(*table, chosen.place[0]).empty() &&
+      !LengthUnitIn(*table, chosen.displacement[0]).empty())
+    chosen.length_unit = LengthUnitOf(*table, chosen);
   return chosen;
 }
 
@@ -197,6 +213,7 @@ PointCloud PointsOfTable(DelimitedTable table, const PointColumns& columns,
                       {},
                       displacements->length_unit,
                       SigmaOf(table, *displacements),
+                      cloud.points,
                       PointsOf(table, displacements->place),
                       PointsOf(table, displacements->displacement),
                       displacements->places_are_deformed};
@@ -210,6 +227,9 @@ PointCloud PointsOfTable(DelimitedTable table, const PointColumns& columns,
   if (cloud.Size() > 0) return cloud;
   if (!columns.position[0].empty()) {
     cloud.points = Columns(table, columns.position);
+    if (correlation != nullptr && !table.header.empty()) {
+      correlation->length_unit = LengthUnitIn(table, RequireColumn(table, columns.position[0]));
+    }
     if (!columns.normal[0].empty()) cloud.normals = Columns(table, columns.normal);
     return cloud;
   }

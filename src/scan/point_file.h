@@ -31,8 +31,9 @@ struct PointColumns {
 struct CorrelationTable {
   bool is_read = false;     // false: the file is none
   std::vector<double> ids;  // of each row; empty where the table gives none
-  std::string length_unit;  // empty where the table gives none
+  std::string length_unit;  // of any table with names of columns; empty where they give none
   Eigen::VectorXd sigma;    // of each row, in any unit; empty where the table gives none
+  Eigen::Matrix3Xd points;  // 3 × rows, in the file's unit; NaN where a point failed
   // 3 × rows, as the columns have them, and whether the former include the latter.
   Eigen::Matrix3Xd places, displacements;
   bool places_are_deformed = false;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -11,6 +12,8 @@
 
 #include "core/error.h"
 #include "core/npy.h"
+#include "geometry/nearest.h"
+#include "geometry/tri_mesh.h"
 #include "scan/delimited_table.h"
 #include "scan/frame_list.h"
 #include "scan/frame_points.h"
@@ -81,6 +84,65 @@ std::vector<Eigen::Index> RowsOf(const std::vector<double>& wanted, const std::v
   return rows;
 }
 
+// The places of the first frame, which identify its points. A failed point at (0, 0, 0) has none.
+Eigen::Matrix3Xd KnownPlaces(const CorrelationTable& correlation) {
+  Eigen::Matrix3Xd places = correlation.places;
+  for (Eigen::Index i = 0; i < places.cols(); ++i) {
+    const bool is_failed = !correlation.points.col(i).allFinite() && places.col(i).isZero(0);
+    if (is_failed || !places.col(i).allFinite())
+      places.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return places;
+}
+
+// The distance within which two places are the same: a small part of the spacing of the points.
+double SamePlaceDistance(const Eigen::Matrix3Xd& places) {
+  constexpr double kShare = 0.05;
+  return kShare * BoundingBoxDiagonal(places) / std::sqrt(static_cast<double>(places.cols()));
+}
+
+// The rows of a file whose points have the places `wanted` in the reference state, in this order;
+// −1 for points that the file does not have.
+std::vector<Eigen::Index> RowsAt(const Eigen::Matrix3Xd& wanted,
+                                 const CorrelationTable& correlation,
+                                 const std::filesystem::path& file) {
+  const Eigen::Matrix3Xd &places = correlation.places, &points = correlation.points;
+  std::vector<Eigen::Index> known, usable;
+  for (Eigen::Index i = 0; i < wanted.cols(); ++i)
+    if (wanted.col(i).allFinite()) known.push_back(i);
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (points.col(i).allFinite() && places.col(i).allFinite()) usable.push_back(i);
+  const Eigen::Matrix3Xd known_places = wanted(Eigen::all, known);
+  const double same = known.empty() ? 0 : SamePlaceDistance(known_places);
+  // A point that failed in the first frame has a row there, but no place.
+  const bool is_in_order =
+      places.cols() == wanted.cols() &&
+      std::all_of(usable.begin(), usable.end(), [&](Eigen::Index i) {
+        return !wanted.col(i).allFinite() || (wanted.col(i) - places.col(i)).norm() <= same;
+      });
+  std::vector<Eigen::Index> rows(static_cast<size_t>(wanted.cols()), -1);
+  if (is_in_order) {
+    std::iota(rows.begin(), rows.end(), 0);
+    return rows;
+  }
+  bool is_found = false;
+  if (!known.empty() && !usable.empty()) {
+    const PointHits hits = PointSearch(known_places).Nearest(places(Eigen::all, usable));
+    for (size_t k = 0; k < usable.size(); ++k) {
+      const Eigen::Index column = static_cast<Eigen::Index>(k);
+      if (hits.distance(0, column) > same) continue;
+      rows[static_cast<size_t>(known[static_cast<size_t>(hits.index(0, column))])] = usable[k];
+      is_found = true;
+    }
+  }
+  if (!is_found)
+    throw InputError({file.string()},
+                     "has no point at a place of the first file, so that its points cannot be "
+                     "recognised: their places in the reference state differ, or are those of the "
+                     "deformed state, which `columns` says by `places: deformed`");
+  return rows;
+}
+
 // The columns of `values` in that order; NaN where there are none.
 Eigen::MatrixXd InOrder(const std::vector<Eigen::Index>& rows, const Eigen::MatrixXd& values) {
   Eigen::MatrixXd ordered =
@@ -106,6 +168,8 @@ void ReadSteps(const Config& frames, const DataLocation& data, PointFrames* sour
   auto steps =
       std::make_shared<SteppedTable>(DivideIntoSteps(ReadDelimitedTable(file), step, time));
   const double unit = ReadUnit(frames, "time_unit", kTime, "s");
+  if (!time.empty())
+    RefuseOtherUnit(steps->table, RequireColumn(steps->table, time), unit, kTime, "time_unit");
   for (double& at : steps->times) at *= unit;
   source->files.assign(steps->rows.size(), {file});
   source->step.resize(steps->rows.size());
@@ -230,6 +294,9 @@ void ReadSource(const Config& frames, const DataLocation& data, PointFrames* sou
   }
   source->tracked = frames.Flag("tracked", correlation.is_read);
   if (source->tracked) source->ids = correlation.ids;
+  if (source->tracked && correlation.is_read && correlation.ids.empty() &&
+      !correlation.places_are_deformed)
+    source->places = KnownPlaces(correlation);
   const std::string& unit = correlation.length_unit;
   if (!unit.empty() && unit != data.length_unit) {
     warnings->push_back(fmt::format("{} says that its lengths are in {}; recording.yaml says {}",
@@ -252,10 +319,15 @@ void LoadPoints(const PointFrames& source, Frame* frame) {
   const std::filesystem::path& file = source.files[frame->index][0];
   CorrelationTable correlation;
   PointCloud raw = PointsOfFrame(source, frame->index, &frame->notes, &correlation);
+  std::vector<Eigen::Index> rows;
   if (!source.ids.empty()) {
     if (correlation.ids.empty())
       throw InputError({file.string()}, "does not number its points, as the first file does");
-    const std::vector<Eigen::Index> rows = RowsOf(source.ids, correlation.ids, file);
+    rows = RowsOf(source.ids, correlation.ids, file);
+  } else if (source.places.cols() > 0 && correlation.is_read) {
+    rows = RowsAt(source.places, correlation, file);
+  }
+  if (!rows.empty()) {
     raw.points = InOrder(rows, raw.points);
     if (correlation.sigma.size() > 0)
       correlation.sigma = InOrder(rows, correlation.sigma.transpose()).transpose();

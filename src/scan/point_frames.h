@@ -25,10 +25,13 @@ struct PointFrames : FileFrames {
   static constexpr const char* kKind = "points";
   static constexpr const char* kTitle = "point clouds";
 
-  Similarity world_from_file;                 // its length unit included
-  PointColumns columns;                       // columns of text tables
-  std::vector<double> ids;                    // of the rows of all frames, where a table of image
-                                              // correlation gives them; empty: rows are in order
+  Similarity world_from_file;  // its length unit included
+  PointColumns columns;        // columns of text tables
+  std::vector<double> ids;     // of the rows of all frames, where a table of image
+                               // correlation gives them
+  // 3 × rows of the first frame, in its unit, NaN where a point has none: where a table of image
+  // correlation without numbers has its points in the reference state. 3 × 0: rows are in order.
+  Eigen::Matrix3Xd places = Eigen::Matrix3Xd(3, 0);
   std::shared_ptr<const SteppedTable> steps;  // of one file with all frames; null: a file each
   std::vector<size_t> step;                   // of each frame, in `steps`
   std::vector<double> header_times;           // s, of each file, from the headers; may be empty
@@ -39,10 +42,13 @@ struct PointFrames : FileFrames {
 };
 
 // The points of tables of image correlation (displacement_table.h) are tracked unless the recording
-// says otherwise; row i of a frame is then the point that row i of the first file identifies. Warns
-// when the first file gives another length unit than recording.yaml.
+// says otherwise; row i of a frame is then the point that row i of the first file identifies by its
+// number or, where the table has none, by its place in the reference state. Warns when the first
+// file gives another length unit than recording.yaml.
 void ReadSource(const Config& frames, const DataLocation& data, PointFrames* source,
                 std::vector<std::string>* warnings);
+// Throws InputError, beside the reasons of ReadPointFile, when none of the tracked points of a file
+// is one of the first file.
 void LoadPoints(const PointFrames& source, Frame* frame);
 std::vector<double> TimesInFiles(const PointFrames& source);
 void KeepFrames(const std::vector<int>& chosen, PointFrames* source);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "geometry/rotation.h"
 #include "scan/time_series.h"
@@ -25,10 +26,22 @@ void CheckMarkers(const Config& item, const std::vector<std::string>& chosen,
   }
 }
 
+// A rotation vector can jump although the rotation does not: from an angle of 180° to −180° about
+// the same axis. The path between such rows would be a turn backwards.
+void RequireContinuousTurn(const Config& turn, const DelimitedTable& table,
+                           const Eigen::Matrix3Xd& rotations) {
+  for (Eigen::Index k = 1; k < rotations.cols(); ++k)
+    if ((rotations.col(k) - rotations.col(k - 1)).norm() > std::numbers::pi)
+      turn.Fail("x", PlaceOfRow(table, k) +
+                         ": the rotation vector changes by more than 180° from the row before; it "
+                         "must be continuous (an angle that passes 180° goes on to 181°), with "
+                         "enough rows");
+}
+
 void ReadPath(const Config& path, const DataLocation& data, const FrameData& frames,
               RecordedGrip* grip) {
   const double unit = ReadUnit(path, "length_unit", kLength, data.length_unit);
-  const TimeSeries series = ReadTimeSeries(path, data, frames, unit);
+  const TimeSeries series = ReadTimeSeries(path, data, frames, unit, kLength, "length_unit");
   grip->motion = GripMotion::kGiven;
   grip->file = series.table.file;
   grip->times = series.times;
@@ -36,11 +49,13 @@ void ReadPath(const Config& path, const DataLocation& data, const FrameData& fra
   const std::optional<Config> turn = path.OptionalChild("turn");
   if (!turn) return;
   const double radian = ReadUnit(*turn, "unit", kAngle, "rad");
-  grip->rotations =
-      ColumnsOf(series.table, {turn->Text("x"), turn->Text("y"), turn->Text("z")}, radian);
+  const std::vector<std::string> turns = {turn->Text("x"), turn->Text("y"), turn->Text("z")};
+  grip->rotations = ColumnsOf(series.table, turns, radian);
+  RefuseOtherUnits(series.table, turns, radian, kAngle, "unit");
   if (!grip->rotations.allFinite()) {
     turn->Fail("x", grip->file.string() + ": a row of the turn is not finite");
   }
+  RequireContinuousTurn(*turn, series.table, grip->rotations);
   grip->pivot = turn->Vector("about", kLength);
 }
 

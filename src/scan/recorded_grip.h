@@ -64,7 +64,8 @@ std::string WithPlacement(std::string mapping, const PlacementDeviation& placeme
 //   follows_markers: [a, b]           names among `marker_names`
 //   path: {file, time, x, y, z, time_unit, length_unit, turn: {x, y, z, unit, about}}
 // A path has one row per time, the first of which belongs to the undeformed place; `turn` names
-// three more columns of the same file with a rotation vector about the point `about`. `deforms:
+// three more columns of the same file with a rotation vector about the point `about`, which changes
+// by at most π between two rows. `deforms:
 // true` lets a grip that follows something deform with it. `directions: [z]` beside a path without
 // `turn` leaves the part free along the other axes, like plates without friction. `frames` are all
 // frames in the files, `marker_names` is empty when the frames have no markers. Throws InputError

@@ -38,6 +38,15 @@ std::vector<Region> RegionsOf(const RecordedObject& object) {
   return regions;
 }
 
+std::vector<Region*> RegionsIn(RecordedObject* object) {
+  std::vector<Region*> regions;
+  for (RecordedSupport& support : object->fixed) regions.push_back(&support.region);
+  for (RecordedGrip& grip : object->grips) regions.push_back(&grip.region);
+  for (MeasuredForce& force : object->forces)
+    if (force.region) regions.push_back(&*force.region);
+  return regions;
+}
+
 std::vector<std::filesystem::path> FilesOf(const RecordedObject& object) {
   std::vector<std::filesystem::path> files;
   const auto add = [&](const std::filesystem::path& file) {

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "geometry/tri_mesh.h"
+#include "scan/time_span.h"
 
 namespace lacuna {
 namespace {
@@ -48,9 +49,11 @@ std::string DescribeDropped(const Frame& frame) {
 }
 
 std::string DescribeFrame(const Frame& frame) {
-  const Eigen::Vector3d size = 1e3 * BoundingBox(frame.cloud.points).sizes();
+  const Eigen::AlignedBox3d box = BoundingBox(frame.cloud.points);
+  const Eigen::Vector3d size = 1e3 * box.sizes();
   std::string text = fmt::format("{} points, {:.4g} mm × {:.4g} mm × {:.4g} mm", frame.cloud.Size(),
                                  size.x(), size.y(), size.z());
+  if (frame.cloud.Size() > 0) text += ", " + DescribeCorners(box);
   if (frame.cloud.HasNormals()) text += ", with normals";
   if (frame.triangles.cols() > 0) text += fmt::format(", {} triangles", frame.triangles.cols());
   if (frame.dropped_count > 0) {
@@ -82,7 +85,32 @@ std::vector<InfoLine> DescribeObject(const Recording& recording) {
   return lines;
 }
 
+// A sentence if a series at `times` (s) does not cover the frames; empty if it does.
+std::string DescribeUncovered(const std::filesystem::path& file, const Eigen::VectorXd& times,
+                              const Recording& recording, int first, int last) {
+  const double begin = recording.times[first], end = recording.times[last];
+  if (CoversTimes(times, begin, end, TimeMargin(recording.times))) return "";
+  return fmt::format("{} covers {:.9g} s to {:.9g} s, the frames {:.9g} s to {:.9g} s",
+                     file.string(), times[0], times[times.size() - 1], begin, end);
+}
+
 }  // namespace
+
+std::string DescribeUncoveredPath(const Recording& recording, int first, int last) {
+  std::string text;
+  for (const RecordedGrip& grip : recording.object.grips)
+    if (grip.motion == GripMotion::kGiven && text.empty())
+      text = DescribeUncovered(grip.file, grip.times, recording, first, last);
+  return text;
+}
+
+std::string DescribeUncoveredForce(const Recording& recording, int first, int last) {
+  std::string text;
+  for (const MeasuredForce& force : recording.object.forces)
+    if (!force.file.empty() && text.empty())  // not a constant
+      text = DescribeUncovered(force.file, force.times, recording, first, last);
+  return text;
+}
 
 void AddFileOf(const Region& region, Recording* recording) {
   const auto* listed = std::get_if<NodeRegion>(&region.shape);

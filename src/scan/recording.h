@@ -51,11 +51,19 @@ struct Recording {
 // `path` is a recording.yaml or the folder that contains one. Checks that every file exists and
 // reads the first frame. Throws InputError naming file, line, column and field, or file and frame.
 Recording LoadRecording(const std::filesystem::path& path);
+// The recording whose path an experiment gives under `key`. Throws InputError at the key where
+// there is none.
+Recording LoadRecording(const Config& config, const std::string& key);
 
 // Adds the file that lists a region's nodes to Recording::files, in the state that it had before it
 // was read. For regions that an experiment describes beside the recording. Does nothing if the
 // region has no file or the file is listed already.
 void AddFileOf(const Region& region, Recording* recording);
+
+// A sentence about the first given path of a grip, or file of a force, that does not cover the time
+// from frame `first` to frame `last` (time_span.h); empty if there is none.
+std::string DescribeUncoveredPath(const Recording& recording, int first, int last);
+std::string DescribeUncoveredForce(const Recording& recording, int first, int last);
 
 // Reads frame i in [0, FrameCount()). Points that are not finite are dropped and counted. Throws
 // InputError naming file and frame when the file is absent, truncated or malformed, when fewer than

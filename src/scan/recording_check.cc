@@ -84,6 +84,20 @@ void AddDoubtfulTables(const Recording& recording, std::vector<std::string>* fin
   }
 }
 
+// A clamp or a force in another unit or coordinate system than the reference shape.
+void AddRegionsBesideTheShape(const Recording& recording, std::vector<std::string>* findings) {
+  const ReferenceShape& reference = recording.reference;
+  if (reference.source == ReferenceSource::kFirstFrame) return;
+  const Eigen::AlignedBox3d box = ReferenceBox(reference);
+  const Eigen::Vector3d thickness = Eigen::Vector3d::Constant(reference.sheet_thickness);
+  const Eigen::AlignedBox3d thick(box.min() - thickness, box.max() + thickness);
+  for (const Region& region : RegionsOf(recording.object))
+    if (!Meets(region, thick))
+      findings->push_back(
+          fmt::format("region \"{}\" ({}) holds nothing of the reference shape, which extends {}",
+                      region.name, DescribeRegion(region), DescribeCorners(box)));
+}
+
 }  // namespace
 
 std::vector<std::string> ExamineFrames(const Recording& recording, int64_t most_points,
@@ -114,6 +128,7 @@ std::vector<std::string> ExamineFrames(const Recording& recording, int64_t most_
                     with_repeated_points.size(), Listed(with_repeated_points)));
   }
   AddDoubtfulTables(recording, &findings);
+  AddRegionsBesideTheShape(recording, &findings);
   if (i < recording.FrameCount())
     findings.push_back(
         fmt::format("only the first {} of {} frames were examined", i, recording.FrameCount()));

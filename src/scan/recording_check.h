@@ -13,8 +13,9 @@
 namespace lacuna {
 
 // Sentences about frames that repeat the one before exactly, about small components beside the
-// object in scans and meshes, about points that repeat within later frames, and about tables of
-// loads and paths whose first line is doubtful. Reads the frames one after the other until
+// object in scans and meshes, about points that repeat within later frames, about tables of loads
+// and paths whose first line is doubtful, and about held or loaded regions beside the bounding box
+// of the reference shape. Reads the frames one after the other until
 // `most_points` rows have been read, and says if it stopped there. Each frame that is read is given
 // to `also`, for examinations that need more than this module. Throws InputError when a frame
 // cannot be read, and Interrupted.

@@ -67,7 +67,7 @@ void WarnOfReferenceSize(const Frame& first, Recording* recording) {
   constexpr double kFactor = 50;
   const ReferenceShape& reference = recording->reference;
   if (reference.source == ReferenceSource::kFirstFrame || first.cloud.Size() < 2) return;
-  const double size = ReferenceSize(reference);
+  const double size = ReferenceBox(reference).diagonal().norm();
   const double frame_size = BoundingBoxDiagonal(first.cloud.points);
   if (size < kFactor * frame_size && frame_size < kFactor * size) return;
   recording->warnings.push_back(
@@ -129,7 +129,9 @@ Recording ReadDescribed(const std::filesystem::path& path) {
   Recording recording;
   recording.file = config.File();
   const std::filesystem::path own_folder = recording.file.parent_path();
-  recording.name = config.Text("name", own_folder.filename().string());
+  const std::filesystem::path whole =
+      std::filesystem::absolute(recording.file).lexically_normal().parent_path();
+  recording.name = config.Text("name", whole.filename().string());
   recording.data.folder = config.Path("data_folder", ".");
   if (!std::filesystem::is_directory(recording.data.folder)) {
     config.Fail("data_folder",
@@ -191,6 +193,15 @@ Recording LoadRecording(const std::filesystem::path& path) {
   recording.files = std::move(states);
   UseFirstFrame(&recording);
   return recording;
+}
+
+Recording LoadRecording(const Config& config, const std::string& key) {
+  const std::filesystem::path path = config.Path(key);
+  if (!std::filesystem::exists(path))
+    config.Fail(key, fmt::format("there is no file or folder {}", path.string()));
+  if (std::filesystem::is_directory(path) && !std::filesystem::exists(path / "recording.yaml"))
+    config.Fail(key, fmt::format("the folder {} contains no recording.yaml", path.string()));
+  return LoadRecording(path);
 }
 
 }  // namespace lacuna

@@ -5,6 +5,7 @@
 
 #include "geometry/mesh_io.h"
 #include "geometry/tri_mesh.h"
+#include "scan/region.h"
 
 namespace lacuna {
 namespace {
@@ -65,15 +66,17 @@ std::string DescribeReference(const ReferenceShape& reference) {
   if (reference.sheet_thickness > 0) {
     text += fmt::format(", an open sheet {:.4g} mm thick", 1e3 * reference.sheet_thickness);
   }
+  if (reference.source != ReferenceSource::kFirstFrame)
+    text += ", " + DescribeCorners(ReferenceBox(reference));
   return text;
 }
 
-double ReferenceSize(const ReferenceShape& reference) {
+Eigen::AlignedBox3d ReferenceBox(const ReferenceShape& reference) {
   CHECK(reference.source != ReferenceSource::kFirstFrame);
   const Eigen::Matrix3Xd points = reference.source == ReferenceSource::kMesh
                                       ? ReadTriMesh(reference.file).mesh.vertices
                                       : ReadTetMesh(reference.file).mesh.nodes;
-  return BoundingBoxDiagonal(reference.world_from_file * points);
+  return BoundingBox(reference.world_from_file * points);
 }
 
 }  // namespace lacuna

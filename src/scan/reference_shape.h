@@ -2,6 +2,7 @@
 #ifndef LACUNA_SCAN_REFERENCE_SHAPE_H_
 #define LACUNA_SCAN_REFERENCE_SHAPE_H_
 
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <string>
 
@@ -32,12 +33,12 @@ struct ReferenceShape {
 ReferenceShape ReadReference(const Config& config, const DataLocation& data,
                              const std::filesystem::path& own_folder, bool frames_show_surface);
 
-// What `lacuna info` says about the reference shape.
+// What `lacuna info` says about the reference shape; reads the file of a mesh.
 std::string DescribeReference(const ReferenceShape& reference);
 
-// The diagonal of the bounding box of the mesh, m, in the world frame; reads its file. The source
-// must not be the first frame.
-double ReferenceSize(const ReferenceShape& reference);
+// The bounding box of the mesh, m, in the world frame, without the thickness of a sheet; reads its
+// file. The source must not be the first frame.
+Eigen::AlignedBox3d ReferenceBox(const ReferenceShape& reference);
 
 }  // namespace lacuna
 

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/npy.h"
 #include "core/quoted_text.h"
+#include "geometry/tri_mesh.h"
 #include "scan/delimited_table.h"
 #include "scan/yaml_format.h"
 
@@ -24,8 +26,19 @@ std::vector<int> SortedUnique(std::vector<int> nodes) {
 }
 
 std::vector<int> ReadNodeFile(const std::filesystem::path& file) {
-  Eigen::MatrixXd numbers =
-      file.extension() == ".npy" ? ReadNpyMatrix(file) : ReadDelimitedTable(file).values;
+  DelimitedTable table;
+  if (file.extension() == ".npy")
+    table.values = ReadNpyMatrix(file);
+  else
+    table = ReadDelimitedTable(file);
+  const Eigen::MatrixXd& numbers = table.values;
+  // A second column may be the index that a program puts in front of each row.
+  const bool is_one_row = numbers.rows() == 1 && table.header.empty();
+  if (numbers.cols() > 1 && !is_one_row)
+    throw InputError({file.string()},
+                     fmt::format("has {} columns; expected the numbers of the nodes in one column, "
+                                 "without an index in front of them",
+                                 numbers.cols()));
   std::vector<int> nodes;
   for (const double number : numbers.reshaped()) {
     if (!(number >= 0 && number < 1e9 && number == std::floor(number))) {
@@ -54,6 +67,42 @@ HalfSpaceRegion ReadHalfSpace(const Config& config) {
   return region;
 }
 
+// Adds the midpoints of the edges both of whose ends are in the region, except for midpoints that
+// the file numbers itself.
+void AddMidpoints(const TetMesh& mesh, int file_nodes, std::vector<char>* is_in) {
+  constexpr int kEnds[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+  for (const auto tet : mesh.tets.colwise())
+    for (int edge = 0; edge < 6; ++edge) {
+      const int midpoint = tet[4 + edge];
+      if (midpoint >= file_nodes && (*is_in)[tet[kEnds[edge][0]]] && (*is_in)[tet[kEnds[edge][1]]])
+        (*is_in)[midpoint] = 1;
+    }
+}
+
+std::vector<int> NodesOfList(const NodeRegion& listed, const std::string& name,
+                             const TetMesh& mesh) {
+  const int count = static_cast<int>(mesh.NodeCount());
+  const int numbered = listed.file_nodes > 0 ? std::min(listed.file_nodes, count) : count;
+  if (listed.nodes.empty()) throw InputError(fmt::format("region \"{}\" lists no node", name));
+  if (listed.nodes.back() >= numbered)
+    throw InputError(
+        fmt::format("region \"{}\" lists node {}; the reference shape has {} nodes, counted from 0",
+                    name, listed.nodes.back(), numbered));
+  if (listed.file_nodes == 0) return listed.nodes;
+  std::vector<char> is_in(static_cast<size_t>(count), 0);
+  const int corners = mesh.tets.topRows(4).maxCoeff() + 1;
+  for (const int node : listed.nodes) {
+    is_in[node] = 1;
+    for (int level = node + numbered; listed.is_sheet && level < corners; level += numbered)
+      is_in[level] = 1;
+  }
+  if (mesh.Order() == 2) AddMidpoints(mesh, numbered, &is_in);
+  std::vector<int> nodes;
+  for (int node = 0; node < count; ++node)
+    if (is_in[node]) nodes.push_back(node);
+  return nodes;
+}
+
 struct ContainsPoint {
   Eigen::Vector3d x;
   bool operator()(const BoxRegion& region) const {
@@ -66,6 +115,22 @@ struct ContainsPoint {
     return (x - region.point).dot(region.normal) >= -kBorder;
   }
   bool operator()(const NodeRegion&) const { return false; }
+};
+
+struct MeetsBox {
+  Eigen::AlignedBox3d box;
+  bool operator()(const BoxRegion& region) const {
+    return region.box.squaredExteriorDistance(box) <= kBorder * kBorder;
+  }
+  bool operator()(const SphereRegion& region) const {
+    return box.exteriorDistance(region.center) <= region.radius + kBorder;
+  }
+  bool operator()(const HalfSpaceRegion& region) const {
+    const Eigen::Vector3d farthest =
+        (region.normal.array() > 0).select(box.max().array(), box.min().array());
+    return ContainsPoint{farthest}(region);
+  }
+  bool operator()(const NodeRegion&) const { return true; }
 };
 
 std::string Triple(const Eigen::Vector3d& v) {
@@ -137,24 +202,31 @@ std::string WithDirections(std::string mapping, AxisSet axes) {
   return mapping + ", directions: [" + axes.Names() + "]}";
 }
 
-std::vector<int> SelectNodes(const Region& region, const Eigen::Matrix3Xd& nodes) {
+std::vector<int> SelectNodes(const Region& region, const TetMesh& mesh) {
+  const auto* listed = std::get_if<NodeRegion>(&region.shape);
+  return listed != nullptr ? NodesOfList(*listed, region.name, mesh)
+                           : SelectPoints(region, mesh.nodes);
+}
+
+std::vector<int> SelectPoints(const Region& region, const Eigen::Matrix3Xd& points) {
+  CHECK(!std::holds_alternative<NodeRegion>(region.shape)) << region.name;
   std::vector<int> selected;
-  if (const auto* listed = std::get_if<NodeRegion>(&region.shape)) {
-    selected = listed->nodes;
-    if (!selected.empty() && selected.back() >= nodes.cols()) {
-      throw InputError(fmt::format("region \"{}\" lists node {}; the reference shape has {} nodes",
-                                   region.name, selected.back(), nodes.cols()));
-    }
-  } else {
-    for (int i = 0; i < nodes.cols(); ++i) {
-      if (Contains(region, nodes.col(i))) selected.push_back(i);
-    }
-  }
+  for (int i = 0; i < points.cols(); ++i)
+    if (Contains(region, points.col(i))) selected.push_back(i);
   if (selected.empty()) {
-    throw InputError(fmt::format("region \"{}\" ({}) holds no node of the reference shape",
-                                 region.name, DescribeRegion(region)));
+    throw InputError(
+        fmt::format("region \"{}\" ({}) holds no node of the reference shape, which extends {}",
+                    region.name, DescribeRegion(region), DescribeCorners(BoundingBox(points))));
   }
   return selected;
+}
+
+bool Meets(const Region& region, const Eigen::AlignedBox3d& box) {
+  return std::visit(MeetsBox{box}, region.shape);
+}
+
+std::string DescribeCorners(const Eigen::AlignedBox3d& box) {
+  return fmt::format("from {} to {} m", Triple(box.min()), Triple(box.max()));
 }
 
 bool Contains(const Region& region, const Eigen::Vector3d& point) {
@@ -163,9 +235,7 @@ bool Contains(const Region& region, const Eigen::Vector3d& point) {
 
 std::string DescribeRegion(const Region& region) {
   struct Describe {
-    std::string operator()(const BoxRegion& r) const {
-      return fmt::format("box from {} to {} m", Triple(r.box.min()), Triple(r.box.max()));
-    }
+    std::string operator()(const BoxRegion& r) const { return "box " + DescribeCorners(r.box); }
     std::string operator()(const SphereRegion& r) const {
       return fmt::format("sphere around {} m of radius {:g} m", Triple(r.center), r.radius);
     }
@@ -173,7 +243,7 @@ std::string DescribeRegion(const Region& region) {
       return fmt::format("half-space beyond {} m along {}", Triple(r.point), Triple(r.normal));
     }
     std::string operator()(const NodeRegion& r) const {
-      return fmt::format("{} nodes of the reference mesh", r.nodes.size());
+      return fmt::format("{} nodes of the reference file", r.nodes.size());
     }
   };
   return std::visit(Describe{}, region.shape);

@@ -13,6 +13,7 @@
 #include "core/config.h"
 #include "core/file_state.h"
 #include "geometry/axis_set.h"
+#include "geometry/tet_mesh.h"
 
 namespace lacuna {
 
@@ -31,10 +32,17 @@ struct HalfSpaceRegion {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit length
 };
 struct NodeRegion {
-  std::vector<int> nodes;  // nodes of the reference mesh, from 0, ascending, no duplicates
+  std::vector<int> nodes;  // from 0, ascending, no duplicates
   // The file that lists them, in its state before it was read; an empty path if the YAML lists
   // them.
   FileState file = {};
+  // The number of nodes of the reference file, to which `nodes` refer
+  // (experiment/listed_regions.h). The mesh of the body has these and others, which were made from
+  // them. 0: `nodes` are all nodes of the mesh that belong to the region.
+  int file_nodes = 0;
+  // Whether the file is a sheet, which the mesh has in several levels: node v + k·file_nodes
+  // belongs to node v of the file (geometry/sheet.h).
+  bool is_sheet = false;
 };
 
 struct Region {
@@ -43,15 +51,28 @@ struct Region {
 };
 
 // Reads exactly one of `box: {min, max}`, `sphere: {center, radius}`, `half_space: {point,
-// normal}`, `nodes: [..]`, `nodes_file: FILE` (.npy or text with whole numbers; relative to
-// `data_folder`), and `name` (default: `default_name`). Throws InputError (file, line, column and
-// field) when there is not exactly one, or naming the file of nodes when that is malformed.
+// normal}`, `nodes: [..]`, `nodes_file: FILE` (.npy or text with whole numbers, in one column or in
+// one row without names; relative to `data_folder`), and `name` (default: `default_name`). Throws
+// InputError (file, line, column and field) when there is not exactly one, or naming the file of
+// nodes when that is malformed.
 Region ReadRegion(const Config& config, const std::filesystem::path& data_folder,
                   const std::string& default_name);
 
-// The numbers of the nodes (columns of `nodes`, 3 × n, m) in the region, ascending. Throws
-// InputError with the name of the region when there is none or a listed node does not exist.
-std::vector<int> SelectNodes(const Region& region, const Eigen::Matrix3Xd& nodes);
+// The numbers of the mesh nodes in the region, ascending. A region that lists nodes of the
+// reference file has, besides these, all levels of a sheet, and the added midpoints of those edges
+// both of whose ends belong to the region. Throws InputError with the name of the region when there
+// is none or a listed node does not exist.
+std::vector<int> SelectNodes(const Region& region, const TetMesh& mesh);
+
+// The numbers of the points (columns, m) in a region that is a shape (CHECKed), ascending. Throws
+// InputError with the name of the region when there is none.
+std::vector<int> SelectPoints(const Region& region, const Eigen::Matrix3Xd& points);
+
+// Whether a region that is a shape has a point in common with the box (m); true for listed nodes.
+bool Meets(const Region& region, const Eigen::AlignedBox3d& box);
+
+// The corners of a box (m): "from (0, 0, 0) to (0.1, 0.02, 0.02) m".
+std::string DescribeCorners(const Eigen::AlignedBox3d& box);
 
 // Whether the point (m, world frame) lies in a region that is a shape; false for listed nodes.
 bool Contains(const Region& region, const Eigen::Vector3d& point);

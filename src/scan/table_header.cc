@@ -39,9 +39,12 @@ size_t FindSeparator(std::string_view line, size_t from) {
   return std::string_view::npos;
 }
 
-std::optional<HeaderValue> ParseValue(std::string_view text) {
+// `has_decimal_commas`: of the rows below. Without them, the comma of "1,005" may as well separate
+// thousands, and such a value is left out.
+std::optional<HeaderValue> ParseValue(std::string_view text, bool has_decimal_commas) {
   const size_t end = std::min(text.find_first_of(" \t["), text.size());
-  const std::optional<double> number = ParseNumber(text.substr(0, end));
+  const std::optional<double> number = ParseDecimal(text.substr(0, end));
+  if (MayBeThousands(text.substr(0, end)) && !has_decimal_commas) return std::nullopt;
   if (end == 0 || !number) return std::nullopt;
   std::string_view unit = Trim(text.substr(end));
   if (unit.size() >= 2 && unit.front() == '[' && unit.back() == ']')
@@ -52,26 +55,45 @@ std::optional<HeaderValue> ParseValue(std::string_view text) {
   return HeaderValue{*number, std::string(unit)};
 }
 
+// Whether the numbers of the rows below the comments may have decimal commas: where ';' or a tab is
+// between their columns, and no decimal point is in the first two rows, of which one may be that of
+// the names.
+bool MayHaveDecimalCommas(const std::vector<std::string_view>& lines) {
+  int rows = 0;
+  for (size_t row = 0; row < lines.size() && rows < 2; ++row) {
+    if (CommentIn(lines[row]) || DeclaredDelimiter(lines[row])) continue;
+    if (lines[row].find_first_of(";\t") == std::string_view::npos) return false;
+    ++rows;
+    for (const std::string_view field :
+         SplitFields(lines[row], lines[row].find(';') == std::string_view::npos ? '\t' : ';'))
+      if (ParseNumber(field) && field.find('.') != std::string_view::npos) return false;
+  }
+  return rows > 0;
+}
+
 }  // namespace
 
 std::map<std::string, HeaderValue> HeaderValuesIn(std::string_view content) {
   std::map<std::string, HeaderValue> values;
   const std::vector<std::string_view> lines = SplitLines(content);
+  const bool has_decimal_commas = MayHaveDecimalCommas(lines);
   for (size_t row = 0; row < lines.size(); ++row) {
     const std::optional<std::string_view> comment = CommentIn(lines[row]);
     if (!comment && Trim(lines[row]) == kStageHeader && row + 1 < lines.size()) {
       const auto names = SplitFields(lines[row], ';'), fields = SplitFields(lines[++row], ';');
       for (size_t k = 0; k < std::min(names.size(), fields.size()); ++k)
-        if (const auto value = ParseValue(fields[k])) values.emplace(std::string(names[k]), *value);
+        if (const auto value = ParseValue(fields[k], has_decimal_commas))
+          values.emplace(std::string(names[k]), *value);
       continue;
     }
+    if (row == 0 && DeclaredDelimiter(lines[row])) continue;
     if (!comment) break;
     const size_t first = FindSeparator(*comment, 0);
     if (first == std::string_view::npos || first == 0) continue;
     size_t last = first;
     for (size_t at = first; at != std::string_view::npos; at = FindSeparator(*comment, at + 1))
       last = at;
-    if (const auto value = ParseValue(Trim(comment->substr(last + 1))))
+    if (const auto value = ParseValue(Trim(comment->substr(last + 1)), has_decimal_commas))
       values.emplace(std::string(Trim(comment->substr(0, first))), *value);
   }
   return values;

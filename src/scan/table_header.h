@@ -21,7 +21,8 @@ struct HeaderValue {
 };
 
 // The values in the comments above the first row, by name; of a name that occurs twice, the first.
-// Comments begin with # or ***. Values that are not numbers are left out.
+// Comments begin with # or ***. Numbers have a decimal point or a decimal comma. Values that are
+// not numbers, or may have a separator of thousands, are left out.
 std::map<std::string, HeaderValue> HeaderValuesIn(std::string_view content);
 
 // Reads the comments of a text file. Throws InputError when it cannot be read.

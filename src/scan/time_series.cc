@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "core/atomic_file.h"
 #include "core/npy.h"
@@ -42,13 +43,6 @@ Eigen::Map<const Eigen::VectorXd> AsVector(const std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
-// The place of a row: "load.csv:7", or "load.npy: row 7" where the file is no text.
-std::string PlaceOf(const DelimitedTable& table, Eigen::Index row) {
-  const auto k = static_cast<size_t>(row);
-  return k < table.line.size() ? fmt::format("{}:{}", table.file.string(), table.line[k])
-                               : fmt::format("{}: row {}", table.file.string(), k + 1);
-}
-
 // The values `names` in the headers of the frame files.
 TimeSeries ReadFromHeaders(const Config& config, const FrameData& frames,
                            const std::vector<std::string>& names, double unit) {
@@ -69,6 +63,12 @@ TimeSeries ReadFromHeaders(const Config& config, const FrameData& frames,
 
 }  // namespace
 
+std::string PlaceOfRow(const DelimitedTable& table, Eigen::Index row) {
+  const auto k = static_cast<size_t>(row);
+  return k < table.line.size() ? fmt::format("{}:{}", table.file.string(), table.line[k])
+                               : fmt::format("{}: row {}", table.file.string(), k + 1);
+}
+
 double ReadUnit(const Config& config, const std::string& key, const Dimension& dimension,
                 const std::string& default_unit) {
   const std::string unit = config.Text(key, default_unit);
@@ -77,6 +77,33 @@ double ReadUnit(const Config& config, const std::string& key, const Dimension& d
   } catch (const std::invalid_argument& problem) {
     config.Fail(key, problem.what());
   }
+}
+
+void RefuseOtherUnit(const DelimitedTable& table, Eigen::Index column, double unit,
+                     const Dimension& dimension, const std::string& key) {
+  if (table.header.empty()) return;
+  const std::string& header = table.header[static_cast<size_t>(column)];
+  const std::string own = SplitColumnName(header).unit;
+  MeasuredQuantity named;
+  try {
+    named = ParseAnyQuantity("1 " + own);
+  } catch (const std::invalid_argument&) {
+    return;  // a remark
+  }
+  constexpr double kRounding = 1e-9;
+  if (!named.dimension.SameAs(dimension) || std::abs(named.value - unit) <= kRounding * unit)
+    return;
+  throw InputError({table.file.string()},
+                   fmt::format("has a column \"{}\", but its values are read in another unit; say "
+                               "`{}: {}` in recording.yaml, or rename the column",
+                               header, key, own));
+}
+
+void RefuseOtherUnits(const DelimitedTable& table, const std::vector<std::string>& names,
+                      double unit, const Dimension& dimension, const std::string& key) {
+  if (table.header.empty()) return;
+  for (const std::string& name : names)
+    RefuseOtherUnit(table, RequireColumn(table, name), unit, dimension, key);
 }
 
 Eigen::MatrixXd ColumnsOf(const DelimitedTable& table, const std::vector<std::string>& names,
@@ -89,9 +116,12 @@ Eigen::MatrixXd ColumnsOf(const DelimitedTable& table, const std::vector<std::st
 }
 
 TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data, const FrameData& frames,
-                          double unit) {
-  return ReadColumns(config, data, frames,
-                     {config.Text("x", "1"), config.Text("y", "2"), config.Text("z", "3")}, unit);
+                          double unit, const Dimension& dimension, const std::string& key) {
+  const std::vector<std::string> names = {config.Text("x", "1"), config.Text("y", "2"),
+                                          config.Text("z", "3")};
+  TimeSeries series = ReadColumns(config, data, frames, names, unit);
+  RefuseOtherUnits(series.table, names, unit, dimension, key);
+  return series;
 }
 
 TimeSeries ReadColumns(const Config& config, const DataLocation& data, const FrameData& frames,
@@ -106,8 +136,10 @@ TimeSeries ReadColumns(const Config& config, const DataLocation& data, const Fra
   const std::string time = config.Text("time", "");
   series.values = ColumnsOf(table, names, unit);
   if (!time.empty()) {
-    series.times =
-        ReadUnit(config, "time_unit", kTime, "s") * table.values.col(RequireColumn(table, time));
+    const double time_unit = ReadUnit(config, "time_unit", kTime, "s");
+    const Eigen::Index column = RequireColumn(table, time);
+    RefuseOtherUnit(table, column, time_unit, kTime, "time_unit");
+    series.times = time_unit * table.values.col(column);
   } else if (table.values.rows() == static_cast<Eigen::Index>(frames.times.size())) {
     series.times = AsVector(frames.times);
   } else {
@@ -117,8 +149,8 @@ TimeSeries ReadColumns(const Config& config, const DataLocation& data, const Fra
   for (Eigen::Index i = 0; i < series.times.size(); ++i) {
     const bool ascends = i == 0 || series.times[i] > series.times[i - 1];
     if (!std::isfinite(series.times[i]) || !ascends || !series.values.col(i).allFinite()) {
-      config.Fail("file",
-                  PlaceOf(table, i) + ": is not finite or does not follow the row before in time");
+      config.Fail("file", PlaceOfRow(table, i) +
+                              ": is not finite or does not follow the row before in time");
     }
   }
   return series;

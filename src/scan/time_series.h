@@ -28,12 +28,25 @@ TimeSeries ReadColumns(const Config& config, const DataLocation& data, const Fra
                        const std::vector<std::string>& names, double unit);
 
 // The same for the components of a vector, the columns named by `x`, `y`, `z` (default 1, 2, 3).
+// Their unit has this dimension and stands at `key` (RefuseOtherUnit).
 TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data, const FrameData& frames,
-                          double unit);
+                          double unit, const Dimension& dimension, const std::string& key);
 
 // The SI value of one of the unit at `key`, e.g. 1e-3 for "mm".
 double ReadUnit(const Config& config, const std::string& key, const Dimension& dimension,
                 const std::string& default_unit);
+
+// Throws InputError naming the table where the name of the column has a unit of this dimension in
+// brackets, as in "Force [kN]", that is not `unit` (SI). `key` is the one of recording.yaml that
+// gives the unit. A table without names has no such columns.
+void RefuseOtherUnit(const DelimitedTable& table, Eigen::Index column, double unit,
+                     const Dimension& dimension, const std::string& key);
+
+// The place of a row for messages: "load.csv:7", or "load.npy: row 7" where the file is no text.
+std::string PlaceOfRow(const DelimitedTable& table, Eigen::Index row);
+
+void RefuseOtherUnits(const DelimitedTable& table, const std::vector<std::string>& names,
+                      double unit, const Dimension& dimension, const std::string& key);
 
 // Columns of a table, multiplied by `unit`: names × rows.
 Eigen::MatrixXd ColumnsOf(const DelimitedTable& table, const std::vector<std::string>& names,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -51,6 +52,22 @@ Eigen::MatrixXd Within(const Eigen::VectorXd& times,
 }
 
 }  // namespace
+
+double TimeMargin(const std::vector<double>& frame_times) {
+  constexpr double kShareOfInterval = 1e-3, kRounding = 1e-9;
+  const double first = frame_times.front(), last = frame_times.back();
+  const double rounding = kRounding * std::max(std::abs(first), std::abs(last));
+  if (frame_times.size() < 2) return rounding;
+  const double interval = (last - first) / static_cast<double>(frame_times.size() - 1);
+  return std::max(kShareOfInterval * interval, rounding);
+}
+
+bool CoversTimes(const Eigen::VectorXd& times, double first, double last, double margin) {
+  constexpr double kRounding = 1e-9;
+  const double begin = times[0], end = times[times.size() - 1];
+  const double allowed = std::max(margin, kRounding * (end - begin));
+  return first >= begin - allowed && last <= end + allowed;
+}
 
 std::string DoubtOfTimeSpan(const Eigen::VectorXd& times,
                             const Eigen::Ref<const Eigen::MatrixXd>& values, double first,

@@ -1,11 +1,23 @@
-// Doubts about the times of loads and paths, which are often in another unit than was said.
+// Whether the times of loads and paths fit those of the frames: whether they cover them, and doubts
+// about their unit.
 #ifndef LACUNA_SCAN_TIME_SPAN_H_
 #define LACUNA_SCAN_TIME_SPAN_H_
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 namespace lacuna {
+
+// The difference, s, up to which a time in another file is that of a frame: a thousandth of the
+// mean interval between the frames, so that times may be rounded, and at least their rounding as
+// numbers. `frame_times`: s, ascending, at least one.
+double TimeMargin(const std::vector<double>& frame_times);
+
+// Whether a series at `times` (k ≥ 1, s, ascending) covers the time from `first` to `last` (s) up
+// to `margin` (s) or rounding. Interpolation is constant beyond the ends of a series
+// (time_series.h).
+bool CoversTimes(const Eigen::VectorXd& times, double first, double last, double margin);
 
 // A sentence about a series of `values` (c × k) at `times` (k, s, ascending) beside a recording
 // from `first` to `last` (s): its times end more than four durations of the recording after it, or

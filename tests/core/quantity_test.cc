@@ -22,6 +22,8 @@ TEST(Quantity, ConvertsUnitsToSi) {
   EXPECT_DOUBLE_EQ(ParseQuantity("-9.81 m/s2", kAcceleration), -9.81);
   EXPECT_DOUBLE_EQ(ParseQuantity("180 deg", kAngle), std::numbers::pi);
   EXPECT_DOUBLE_EQ(ParseQuantity("2 min", kTime), 120);
+  EXPECT_EQ(ParseQuantity("0", kTime), 0);
+  EXPECT_EQ(ParseQuantity("0.00", kLength), 0);
   EXPECT_DOUBLE_EQ(ParseQuantity("5 µm", kLength), 5e-6);
   EXPECT_DOUBLE_EQ(ParseQuantity("1e-4", kDimensionless), 1e-4);
   EXPECT_DOUBLE_EQ(ParseQuantity("25 %", kDimensionless), 0.25);
@@ -39,6 +41,7 @@ void ExpectRefused(const char* text, const Dimension& dimension, const char* par
 TEST(Quantity, RefusesInvalidTextAndSaysWhatWasExpected) {
   ExpectRefused("12 Pas", kViscosity, "expected a viscosity, e.g. \"12 Pa s\"");
   ExpectRefused("30", kLength, "a unit is missing");
+  ExpectRefused("0 kg", kLength, "another dimension");
   ExpectRefused("30 kg", kLength, "another dimension");
   ExpectRefused("30 mmm", kLength, "unknown unit \"mmm\"");
   ExpectRefused("30 mm extra", kLength, "unknown unit \"extra\"");
@@ -70,6 +73,11 @@ TEST(Quantity, DeterminesTheDimensionOfAnyUnit) {
   for (const char* text : {"", "m", "3 mmm", "nan s", "3 m/"}) {
     EXPECT_THROW(ParseAnyQuantity(text), std::invalid_argument) << text;
   }
+}
+
+TEST(Quantity, ATimeIsWrittenInMillisecondsBelowASecond) {
+  EXPECT_EQ(DurationText(0.0025), "2.5 ms");
+  EXPECT_EQ(DurationText(1), "1 s");
 }
 
 }  // namespace

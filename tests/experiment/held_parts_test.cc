@@ -20,20 +20,20 @@ class HeldParts : public testing::Test {
  protected:
   std::string ErrorOf(const std::vector<HeldPart>& parts) const {
     try {
-      NodesOfParts(parts, nodes_);
+      NodesOfParts(parts, mesh_);
     } catch (const InputError& error) {
       return error.what();
     }
     return "";
   }
-  const Eigen::Matrix3Xd nodes_ = BoxMesh({0, 0, 0}, {1, 1, 1}, {2, 2, 2}).nodes;  // 27
+  const TetMesh mesh_ = BoxMesh({0, 0, 0}, {1, 1, 1}, {2, 2, 2});  // 27 nodes
 };
 
 TEST_F(HeldParts, PlanesOfSymmetryShareTheirEdgeAndEndAtAClamp) {
   const std::vector<Eigen::VectorXi> held =
       NodesOfParts({Below("x plane", 0, 0, AxisSet::Of(0)), Below("y plane", 1, 0, AxisSet::Of(1)),
                     Below("clamp", 2, 0, AxisSet::All(), /*moves=*/true)},
-                   nodes_);
+                   mesh_);
   EXPECT_EQ(held[0].size(), 6);  // nine, less the three of the clamp
   EXPECT_EQ(held[1].size(), 6);
   EXPECT_EQ(held[2].size(), 9);

@@ -71,8 +71,8 @@ TEST(BendScene, BendsInThePlaneOfItsForceAndIsHeldAtItsClamp) {
   const Scene scene = ReadEdited("bend.yaml", kCoarserHeldBar);
   const SceneMotion motion = Simulate(scene);
   ASSERT_TRUE(motion.IsUsable()) << motion.message;
-  const Eigen::VectorXi clamp = NodesIn(scene.grips[0].region, motion.body->mesh.nodes);
-  const Eigen::VectorXi tip = NodesIn(scene.loads[0].region, motion.body->mesh.nodes);
+  const Eigen::VectorXi clamp = NodesIn(scene.grips[0].region, motion.body->mesh);
+  const Eigen::VectorXi tip = NodesIn(scene.loads[0].region, motion.body->mesh);
   const Eigen::Vector3d force = scene.loads[0].force;
   for (size_t k = 0; k < motion.times.size(); ++k) {
     EXPECT_EQ(motion.positions[k](Eigen::all, clamp), RestOf(motion, clamp));
@@ -97,8 +97,8 @@ TEST(TwistScene, TurnsTheChuckByTheStatedAngleAndTheMiddleByHalf) {
   const Scene scene = ReadEdited("twist.yaml", kCoarserHeldBar);
   const SceneMotion motion = Simulate(scene);
   ASSERT_TRUE(motion.IsUsable()) << motion.message;
-  const Eigen::VectorXi clamp = NodesIn(scene.grips[0].region, motion.body->mesh.nodes);
-  const Eigen::VectorXi chuck = NodesIn(scene.grips[1].region, motion.body->mesh.nodes);
+  const Eigen::VectorXi clamp = NodesIn(scene.grips[0].region, motion.body->mesh);
+  const Eigen::VectorXi chuck = NodesIn(scene.grips[1].region, motion.body->mesh);
   ASSERT_GT(chuck.size(), 10);
   const Eigen::Vector3d centre(0.1, 0.015, 0.015);
   for (size_t k = 0; k < motion.times.size(); ++k) {

@@ -13,7 +13,7 @@ constexpr double kEdge = 0.01;  // m
 TetMesh Plate() { return BoxMesh({0, 0, 0}, {0.08, 0.04, 0.01}, {8, 4, 2}, 2); }
 
 // In the middle of the upper face, at its edge, at its corner, and inside.
-Eigen::Matrix3Xd Places() {
+Eigen::Matrix3Xd PlacesOnPlate() {
   Eigen::Matrix3Xd places(3, 4);
   places.col(0) << 0.041, 0.019, 0.01;
   places.col(1) << 0.041, 0.04, 0.01;
@@ -28,8 +28,8 @@ Eigen::Matrix3Xd Seen(const Instrument& instrument, const Motion& motion) {
   Eigen::VectorXd moved(3 * mesh.NodeCount());
   for (Eigen::Index i = 0; i < mesh.NodeCount(); ++i)
     moved.segment<3>(3 * i) = motion(Eigen::Vector3d(mesh.nodes.col(i)));
-  const Eigen::VectorXd seen = SubsetRows(mesh, Places(), instrument) * moved;
-  return seen.reshaped(3, Places().cols());
+  const Eigen::VectorXd seen = SubsetRows(mesh, PlacesOnPlate(), instrument) * moved;
+  return seen.reshaped(3, PlacesOnPlate().cols());
 }
 
 TEST(SubsetRows, SeeConstantGradientsAsTheyAre) {
@@ -42,7 +42,7 @@ TEST(SubsetRows, SeeConstantGradientsAsTheyAre) {
     const Eigen::Matrix3Xd seen = Seen({kEdge, is_volume}, affine);
     // A place inside belongs to volume correlation.
     for (int k = 0; k < (is_volume ? 4 : 3); ++k)
-      EXPECT_LT((seen.col(k) - affine(Places().col(k))).norm(), 1e-12) << is_volume << k;
+      EXPECT_LT((seen.col(k) - affine(PlacesOnPlate().col(k))).norm(), 1e-12) << is_volume << k;
   }
 }
 
@@ -54,11 +54,11 @@ TEST(SubsetRows, SmoothCurvature) {
   const Eigen::Matrix3Xd seen = Seen({kEdge, false}, bent), in_volume = Seen({kEdge, true}, bent);
   // The mean of x² over five parts of the edge L is 0.08 L², near L²/12.
   const double more = 0.5 * kCurvature * 0.08 * kEdge * kEdge;  // 20 µm
-  EXPECT_NEAR(seen(2, 0) - bent(Places().col(0)).z(), more, 1e-9);
-  EXPECT_NEAR(seen(2, 1) - bent(Places().col(1)).z(), more, 1e-9) << "half of the subset is seen";
-  EXPECT_NEAR(in_volume(2, 3) - bent(Places().col(3)).z(), more, 1e-9);
+  EXPECT_NEAR(seen(2, 0) - bent(PlacesOnPlate().col(0)).z(), more, 1e-9);
+  EXPECT_NEAR(seen(2, 1) - bent(PlacesOnPlate().col(1)).z(), more, 1e-9) << "half of the subset is seen";
+  EXPECT_NEAR(in_volume(2, 3) - bent(PlacesOnPlate().col(3)).z(), more, 1e-9);
   // At the corner the parabola is seen from one side, and its affine fit lies below it.
-  EXPECT_LT(seen(2, 2), bent(Places().col(2)).z());
+  EXPECT_LT(seen(2, 2), bent(PlacesOnPlate().col(2)).z());
 }
 
 }  // namespace

@@ -169,8 +169,19 @@ TEST_F(ReadingAPredictionStudy, RefusesTooFewFrames) {
 TEST_F(ReadingAPredictionStudy, RefusesMarkersWithoutAShape) {
   EXPECT_THAT(MessageAfterInRecording({{"reference: {from: mesh, file: box.off}\n", ""}}),
               HasSubstr("reference: the frames do not show the surface"));
-  EXPECT_THAT(MessageAfterInRecording({{"    - {name: m3,", "    #- {name: m3,"}}),
-              HasSubstr("recordings[0].recording: lacks marker_places"));
+  EXPECT_THAT(
+      MessageAfterInRecording({{"    - {name: m3,", "    #- {name: m3,"}}),
+      ContainsRegex("recordings\\[0\\].recording: the place of m3 on the undeformed object is "
+                    "not known: .*`marker_places` for it, or `markers: \\[m0, m1, m2, m4"));
+}
+
+TEST_F(ReadingAPredictionStudy, NamesTheEntryOfAnAbsentRecording) {
+  EXPECT_THAT(MessageAfter({{"recording.yaml", "recordin.yaml"}}),
+              ContainsRegex("study.yaml:[0-9]+:[0-9]+: recordings\\[0\\].recording: there is no "
+                            "file or folder .*recordin.yaml"));
+  std::filesystem::create_directories(folder_ / "empty");
+  EXPECT_THAT(MessageAfter({{"recording.yaml", "empty"}}),
+              HasSubstr("empty contains no recording.yaml"));
 }
 
 TEST_F(ReadingAPredictionStudy, TakesScansButNoHeldOneForTheShape) {
@@ -192,6 +203,18 @@ TEST_F(ReadingAPredictionStudy, RefusesMarkersWhoseGripFollowsAScan) {
             "gripped: [{name: tool, half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, "
             "0]}}]\nreference"}}),
       HasSubstr("tool is to follow the scan, but there are only markers"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesAnObjectThatNothingHolds) {
+  const std::string clamp =
+      "fixed: [{name: clamp, half_space: {point: [0.002 m, 0 m, 0 m], normal: [-1, 0, 0]}}]\n";
+  EXPECT_THAT(MessageAfterInRecording({{clamp, ""}}),
+              HasSubstr("recordings[0].recording: nothing holds the object after its release"));
+  const std::string damping = "  - {type: mass_damping, alpha: 1 1/s}\n";
+  EXPECT_EQ(
+      MessageAfterInRecording(
+          {{clamp, ""}}, {{damping, damping + "  - {type: elastic_support, modulus: 1 MPa/m}\n"}}),
+      "nothing was refused");
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesAReleaseAfterTheEnd) {
@@ -472,6 +495,27 @@ TEST_F(ReadingAPredictionStudy, TellsOfGravityThatTheModelLacks) {
                                     "has none")));
   study.recordings[0].effects.push_back(MakeGravity(Eigen::Vector3d(0, 0, -9.81)));
   EXPECT_THAT(StudyWarnings(study), ElementsAre());
+}
+
+TEST_F(ReadingAPredictionStudy, WarnsWhereNoFrameIsHeldOut) {
+  EXPECT_THAT(StudyWarnings(ReadBarStudy(folder_.Path())),
+              testing::Not(testing::Contains(HasSubstr("fit_until"))));
+  const std::string until = fmt::format("fit_until: {} s", kFitUntil);
+  const PredictionStudy late = ReadBarStudy(folder_.Path(), {{until, "fit_until: 9 s"}});
+  EXPECT_THAT(StudyWarnings(late),
+              testing::Contains(HasSubstr("bar: `fit_until: 9 s` does not lie before the last "
+                                          "frame that is used, at 0.25 s")));
+  EXPECT_EQ(FittedFrames(late.recordings[0]), late.recordings[0].frames);
+}
+
+TEST_F(ReadingAPredictionStudy, WarnsOfSettingsOfScansWithoutAScan) {
+  const auto warnings = [&](const std::string& scan) {
+    return StudyWarnings(
+        ReadBarStudy(folder_.Path(), {{"noise: 0.05 mm\n", "noise: 0.05 mm\n" + scan}}));
+  };
+  const auto warned = testing::Contains(HasSubstr("`scan` has no effect"));
+  EXPECT_THAT(warnings(""), testing::Not(warned));
+  EXPECT_THAT(warnings("scan: {noise: 1 mm}\n"), warned);
 }
 
 TEST_F(ReadingAPredictionStudy, TellsOfFramesWithoutMarkers) {

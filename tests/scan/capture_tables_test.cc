@@ -124,6 +124,7 @@ TEST(MotiveCsv, ReadsOlderHeadersAndNumbersNamesThatRepeat) {
                                     "Frame,Time,X,Y,Z,X,Y,Z\n0,0,1,2,3,,,\n1,0.01,,,,4,5,6\n"),
                        {});
   EXPECT_THAT(tracks.names, ElementsAre("u", "u (2)"));
+  EXPECT_THAT(tracks.warnings, ElementsAre(HasSubstr("several markers are called u;")));
   EXPECT_EQ(tracks.positions[1].col(1), Eigen::Vector3d(4, 5, 6));
 }
 

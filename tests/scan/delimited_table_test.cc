@@ -60,7 +60,54 @@ TEST(DelimitedTable, FindsAColumnWhoseNameDiffersInCase) {
   const DelimitedTable table = Table("X,Y,y\n1,2,3\n");
   EXPECT_EQ(FindColumn(table, "x"), 0);
   EXPECT_EQ(FindColumn(table, "y"), 2);
-  EXPECT_EQ(FindColumn(Table("X,Y,Y\n1,2,3\n"), "y"), std::nullopt) << "two are alike";
+  EXPECT_EQ(FindColumn(table, "z"), std::nullopt);
+}
+
+TEST(DelimitedTable, RefusesANameThatSeveralColumnsHave) {
+  const DelimitedTable table = Table("t,F,F\n1,2,3\n");
+  EXPECT_THAT(ErrorOf([&] { RequireColumn(table, "F"); }),
+              HasSubstr("t.csv: has 2 columns \"F\", of which the numbers are 2 and 3"));
+  EXPECT_EQ(RequireColumn(table, "3"), 2);
+  EXPECT_EQ(RequireColumn(table, "t"), 0);
+  EXPECT_THAT(ErrorOf([&] { FindColumn(table, "f"); }), HasSubstr("has 2 columns \"f\""));
+}
+
+TEST(DelimitedTable, RefusesCommasThatMaySeparateThousands) {
+  EXPECT_THAT(ErrorOf([] { Table("t,F\n0.1,\"999.5\"\n0.2,\"-1,005\"\n"); }),
+              HasSubstr("t.csv:3:6: got \"-1,005\", which is -1005 with a separator of thousands "
+                        "and -1.005 with a decimal comma"));
+  EXPECT_THAT(ErrorOf([] { Table("t,F\n1,\"1,005\"\n2,\"1,006\"\n"); }), HasSubstr("is 1005 with"))
+      << "nothing decides";
+  EXPECT_THAT(ErrorOf([] { Table("t;F\n0.5;1,005\n"); }), HasSubstr("is 1005 with"));
+  for (const char* content : {"t,F\n1,\"1,005\"\n2,\"1,5\"\n", "t;F\n1;1,005\n2;1,006\n",
+                              "t,F\n1,\"1,005\"\n2,\"0,500\"\n"})
+    EXPECT_EQ(Table(content).values(0, 1), 1.005) << content;
+}
+
+TEST(DelimitedTable, SkipsEmptyRowsAtItsEndOnly) {
+  const DelimitedTable table = Table("x,y\n1,2\n,\n3,4\n,\n,\n,,\n");
+  ASSERT_EQ(table.values.rows(), 3);
+  EXPECT_TRUE(table.values.row(1).array().isNaN().all());
+  EXPECT_EQ(table.values.row(2), Eigen::RowVector2d(3, 4));
+  EXPECT_THAT(table.line, ElementsAre(2, 3, 4));
+  EXPECT_THAT(ErrorOf([] { Table("x,y\n1,2\n,,\n3,4\n"); }), HasSubstr("t.csv:3:1: has 3 entries"));
+}
+
+TEST(DelimitedTable, TakesTheDelimiterThatItsFirstLineDeclares) {
+  for (const char* content : {"sep=;\nx;y\n1,5;2\n", "\"sep=;\"\r\nx;y\r\n1,5;2\r\n",
+                              "sep=\t\nx\ty\n1.5\t2\n", "sep=;\n1,5;2\n"}) {
+    const DelimitedTable table = Table(content);
+    ASSERT_EQ(table.values.rows(), 1) << content;
+    EXPECT_EQ(table.values.row(0), Eigen::RowVector2d(1.5, 2)) << content;
+  }
+}
+
+TEST(DelimitedTable, TabsMayDivideNamesWithOtherDelimiters) {
+  const DelimitedTable table = Table("Time, s\tForce, N\n0,01\t1,5\n");
+  EXPECT_THAT(table.header, ElementsAre("Time, s", "Force, N"));
+  EXPECT_EQ(table.values.row(0), Eigen::RowVector2d(0.01, 1.5));
+  EXPECT_THAT(Table("run 7\nTime; s\tx\n1\t2\n").header, ElementsAre("Time; s", "x"));
+  EXPECT_THAT(Table("x,\ty,\tz\n1,\t2,\t3\n").header, ElementsAre("x", "y", "z"));
 }
 
 TEST(DelimitedTable, DoubtsAFirstLineOfNumbers) {

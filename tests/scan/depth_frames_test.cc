@@ -64,6 +64,16 @@ TEST_F(DepthFramesTest, RefuseCamerasWithDifferentNumbersOfFrames) {
               HasSubstr("cameras[1]: has 2 frames where the cameras before have 1"));
 }
 
+TEST_F(DepthFramesTest, RefuseAnImageOfAnotherSize) {
+  WriteImage("a.png", 0.2);
+  WriteImage("b.png", 0.2);
+  WriteDepthPng(folder_.Path() / "c.png", DepthImage::Constant(3, 2, 0.2), 1e-3);
+  const Recording recording = Load(DepthYaml(Camera("left", "[a.png, b.png, c.png]")));
+  EXPECT_EQ(LoadFrame(recording, 1).cloud.Size(), 5);
+  EXPECT_THAT(ErrorOf([&] { LoadFrame(recording, 2); }),
+              HasSubstr("c.png: has 2 × 3 pixels where"));
+}
+
 TEST_F(DepthFramesTest, WarnOfASizeThatSuggestsAnotherDepthUnit) {
   WriteImage("a.png", 0.01);
   const Recording recording = Load(DepthYaml(Camera("left", "[a.png]")));

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "scan/recording_fixture.h"
+#include "scan/table_header.h"
 
 namespace lacuna {
 namespace {
@@ -243,6 +244,88 @@ TEST_F(DisplacementTable, GivesTheDeviationOfEachPoint) {
   const Frame first = LoadFrame(recording, 0), second = LoadFrame(recording, 1);
   EXPECT_EQ(first.sigma, Eigen::Vector4d(0.1, 0.2, 0.3, 0.4)) << "the failed point is left out";
   EXPECT_EQ(second.sigma, Eigen::Vector4d(0.5, 0.7, 0.6, 0.8)) << "by the points' numbers";
+}
+
+// Points of a grid without numbers, displaced by 7 along x; `lost` is not in the file.
+std::string Grid(int lost, double u, double noise = 0) {
+  std::string text = "X,Y,Z,U,V,W,sigma\n";
+  for (int i = 0; i < 12; ++i)
+    if (i != lost)
+      text += std::to_string(10 * (i % 4) + noise * (i % 3)) + "," + std::to_string(10 * (i / 4)) +
+              "," + std::to_string(i * 5 % 3) + "," + std::to_string(u) + ",0,0,0.1\n";
+  return text;
+}
+
+TEST_F(DisplacementTable, WithoutNumbersIdentifiesPointsByTheirPlaces) {
+  folder_.Write("f/a.csv", Grid(9, 0));
+  folder_.Write("f/b.csv", Grid(2, 7));  // as many rows, which are others
+  folder_.Write("f/c.csv", Grid(-1, 7));
+  folder_.Write("f/d.csv", Grid(9, 7, 0.01));  // places with a little noise
+  const Recording recording = Load(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz}\n"));
+  const Frame first = LoadFrame(recording, 0);
+  ASSERT_EQ(first.cloud.Size(), 11);
+  for (const int i : {1, 2, 3}) {
+    const Frame frame = LoadFrame(recording, i);
+    EXPECT_EQ(frame.row_count, 11);
+    ASSERT_EQ(frame.cloud.Size(), i == 1 ? 10 : 11);
+    for (Eigen::Index k = 0; k < frame.cloud.Size(); ++k) {
+      const Eigen::Vector3d moved =
+          frame.cloud.points.col(k) - first.cloud.points.col(frame.source_row[k]);
+      EXPECT_LT((moved - Eigen::Vector3d(0.007, 0, 0)).norm(), 1e-4) << i << ", row " << k;
+    }
+  }
+}
+
+TEST_F(DisplacementTable, WithoutNumbersIsRefusedWhereNoPlaceIsKnown) {
+  folder_.Write("f/a.csv", Grid(-1, 0));
+  std::string text = "X,Y,Z,U,V,W,sigma\n";
+  for (int i = 0; i < 6; ++i) text += "500," + std::to_string(10 * i) + ",1,0,0,0,0.1\n";
+  folder_.Write("f/b.csv", text);
+  const Recording others = Load(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz}\n"));
+  EXPECT_THAT(ErrorOf([&] { LoadFrame(others, 1); }),
+              HasSubstr("b.csv: has no point at a place of the first file"));
+}
+
+TEST_F(DisplacementTable, ComparesTheUnitsOfColumnsThatAreNamed) {
+  const std::string cloud = Cloud(12);
+  folder_.Write("a.csv", "a [m],b [m],c [m]\n" + cloud);
+  folder_.Write("b.csv", "a (left),b (left),c (left)\n" + cloud);
+  const auto warnings = [&](const std::string& file, const std::string& unit) {
+    const std::string column = " " + unit + "\"";
+    return Load(Yaml("  {kind: points, files: [" + file + "], columns: {x: \"a" + column +
+                     ", y: \"b" + column + ", z: \"c" + column + "}}\n"))
+        .warnings;
+  };
+  EXPECT_THAT(warnings("a.csv", "[m]"), ElementsAre(HasSubstr("lengths are in m; recording.yaml")));
+  EXPECT_THAT(warnings("b.csv", "(left)"), IsEmpty()) << "no unit";
+}
+
+TEST_F(DisplacementTable, RefusesANameThatTwoColumnsHave) {
+  DelimitedTable table = Table("X,Y,Z,U,V,W,U\n1,2,3,0,0,0,9\n");
+  EXPECT_THAT(ErrorOf([&] { FindDisplacementColumns(&table); }),
+              HasSubstr("has the columns \"U\" and \"U\", of which the numbers are 4 and 7"));
+}
+
+TEST_F(DisplacementTable, HasHeadersWithDecimalCommas) {
+  const auto write = [&](const std::string& name, const std::string& time,
+                         const std::string& force) {
+    std::string text = "# time : " + time + "\n# force : " + force + "\nx;y;z\n";
+    for (int i = 0; i < 8; ++i)
+      text +=
+          std::to_string(i) + ",5;" + std::to_string(i * i) + ";" + std::to_string(i % 3) + "\n";
+    folder_.Write(name, text);
+  };
+  write("f/a.csv", "0,00", "1,005");
+  write("f/b.csv", "0,50", "2,5");
+  const Recording recording = Load(
+      Yaml("  {kind: points, files: f/*.csv}\n",
+           "fixed: [{name: base, nodes: [1], measured_force: {from: headers, along: [0, 1, 0], "
+           "value: force, deviation: 1 N}}]\n"));
+  EXPECT_THAT(recording.times, ElementsAre(0, 0.5));
+  EXPECT_EQ(recording.object.reactions.at(0).values, Eigen::RowVector2d(1.005, 2.5));
+  EXPECT_EQ(HeaderValuesIn("# force : 1,005\nx,y\n1.5,2\n").count("force"), 0u)
+      << "the comma may separate thousands";
+  EXPECT_EQ(HeaderValuesIn("# force : 1,5\nx,y\n1.5,2\n").at("force").value, 1.5);
 }
 
 // A nodemap with what ARAMIS writes above the rows.

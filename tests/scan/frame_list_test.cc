@@ -35,6 +35,10 @@ TEST(FrameList, FindsTheNumberMissingFromASequence) {
   EXPECT_EQ(FindMissingNumber({"f_0.ply", "f_10.ply", "f_20.ply"}), std::nullopt);
   EXPECT_EQ(FindMissingNumber({"a.ply", "b.ply", "d.ply"}), std::nullopt);
   EXPECT_EQ(FindMissingNumber({"v1/f_1.ply", "v1/f_2.ply", "v1/f_4.ply"}), 3);
+  // Times at which the frames were taken.
+  EXPECT_EQ(FindMissingNumber({"c_1000.ply", "c_1033.ply", "c_1067.ply", "c_1100.ply"}),
+            std::nullopt);
+  EXPECT_EQ(FindMissingNumber({"f_1.ply", "f_2.ply", "f_5.ply", "f_9.ply"}), std::nullopt);
 }
 
 std::vector<std::filesystem::path> ReadFrom(const TestFolder& folder, const std::string& yaml) {

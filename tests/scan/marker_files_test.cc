@@ -193,6 +193,41 @@ TEST(MarkerCsv, RefusesMissingColumnsAndDecreasingTimes) {
   EXPECT_THAT(ErrorOf([&] { ReadMarkerCsv(back, columns); }), HasSubstr("frame 1: the time 0 s"));
 }
 
+TEST(MarkerCsv, RefusesColumnsOfTheSameName) {
+  const TestFolder folder;
+  const auto file = folder.Write("a.csv", "a_x,a_y,a_z,a_x,a_y,a_z\n1,2,3,4,5,6\n");
+  EXPECT_THAT(ErrorOf([&] { ReadMarkerCsv(file, {}); }), HasSubstr("has several columns \"a_x\""));
+}
+
+TEST(MarkerCsv, FindsNamesInAnyCase) {
+  const TestFolder folder;
+  const auto file = folder.Write("a.csv", "Tip_X,Tip_Y,Tip_Z\n1,2,3\n");
+  const MarkerTracks tracks = ReadMarkerCsv(file, {});
+  EXPECT_THAT(tracks.names, ElementsAre("Tip"));
+  EXPECT_EQ(tracks.positions[0].col(0), Eigen::Vector3d(1, 2, 3));
+  const auto both = folder.Write("b.csv", "a_x,a_y,a_z,b_X,b_Y,b_Z\n1,2,3,4,5,6\n");
+  EXPECT_THAT(ReadMarkerCsv(both, {}).names, ElementsAre("a")) << "an exact fit comes first";
+}
+
+TEST(MarkerCsv, HasTimesInTheirUnit) {
+  const TestFolder folder;
+  const auto file = folder.Write("a.csv", "time [ms],a_x,a_y,a_z\n0,1,2,3\n10,1,2,3\n");
+  MarkerColumns columns;
+  columns.time = "time [ms]";
+  EXPECT_THAT(ErrorOf([&] { ReadMarkerCsv(file, columns); }),
+              HasSubstr("a.csv: has a column \"time [ms]\", but its values are read in another "
+                        "unit; say `time_unit: ms`"));
+  columns.time_unit = 1e-3;
+  EXPECT_DOUBLE_EQ(ReadMarkerCsv(file, columns).times[1], 0.01);
+}
+
+TEST(MarkerCsv, WithoutALineOfNamesSaysSo) {
+  const TestFolder folder;
+  const auto file = folder.Write("a.csv", "0,1,2,3\n1,1,2,3\n");
+  EXPECT_THAT(ErrorOf([&] { ReadMarkerCsv(file, {}); }),
+              HasSubstr("a.csv:1:1: has no line with the names of the columns, such as tip_x"));
+}
+
 std::string MakeTrc(const std::string& frames, const std::string& markers) {
   return "PathFileType\t4\t(X/Y/Z)\twalk.trc\n"
          "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n100\t100\t" +
@@ -212,6 +247,25 @@ TEST(Trc, ReadsMarkersTimesAndGaps) {
   EXPECT_TRUE(tracks.positions[1].col(1).array().isNaN().all());
   EXPECT_TRUE(tracks.positions[2].col(1).array().isNaN().all());
   EXPECT_DOUBLE_EQ(tracks.times[2], 0.02);
+}
+
+TEST(Trc, ReadsDecimalCommas) {
+  const TestFolder folder;
+  std::string content = MakeTrc("3", "2");
+  for (size_t at = content.find("1\t0.00"); (at = content.find('.', at)) != std::string::npos;)
+    content[at] = ',';
+  const MarkerTracks tracks = ReadTrc(folder.Write("a.trc", content));
+  EXPECT_EQ(tracks.positions[1].col(0), Eigen::Vector3d(1.5, 2, 3));
+  EXPECT_DOUBLE_EQ(tracks.times[2], 0.02);
+}
+
+TEST(Trc, NumbersNamesThatRepeat) {
+  const TestFolder folder;
+  std::string content = MakeTrc("3", "2");
+  content.replace(content.find("Right"), 5, "Left");
+  const MarkerTracks tracks = ReadTrc(folder.Write("a.trc", content));
+  EXPECT_THAT(tracks.names, ElementsAre("Left", "Left (2)"));
+  EXPECT_THAT(tracks.warnings, ElementsAre(HasSubstr("a.trc: several markers are called Left")));
 }
 
 TEST(Trc, RefusesContradictoryCounts) {
@@ -307,6 +361,19 @@ TEST(C3d, WarnsOfFramesThatNothingAnnounces) {
               ElementsAre(HasSubstr("the file has room for 70000 frames; 65535 are "
                                     "read")));
   EXPECT_TRUE(ReadC3d(folder.Write("b.c3d", MakeLongC3d(65535, 65535, false))).warnings.empty());
+  const MarkerTracks cut = ReadC3d(folder.Write("c.c3d", MakeLongC3d(300, 200, false)));
+  EXPECT_EQ(cut.positions.size(), 200u);
+  EXPECT_THAT(cut.warnings, ElementsAre(HasSubstr("the header announces 200 frames, but the file "
+                                                  "has room for 300 frames; 200 are read")));
+}
+
+TEST(C3d, NumbersLabelsThatRepeat) {
+  const TestFolder folder;
+  std::string content = MakeC3d(kIntel, true);
+  content.replace(content.find("RIGHT"), 5, "LEFT ");
+  const MarkerTracks tracks = ReadC3d(folder.Write("a.c3d", content));
+  EXPECT_THAT(tracks.names, ElementsAre("LEFT", "LEFT (2)"));
+  EXPECT_THAT(tracks.warnings, ElementsAre(HasSubstr("several markers are called LEFT")));
 }
 
 // Their extents announce 255·255·255 texts without letters.

@@ -51,6 +51,24 @@ TEST_F(RecordingTest, LoadsMarkersWithGapsAndFollowsThem) {
               HasSubstr("m.csv: frame 1: marker a is 1e+297 m away"));
 }
 
+TEST_F(RecordingTest, WarnsOfMarkersAtZeroAndReadsTheirTimesInTheirUnit) {
+  folder_.Write("m.csv",
+                "t,a_x,a_y,a_z,b_x,b_y,b_z\n0,10,0,0,50,0,9\n20,0,0,0,50,0,9\n40,0,0,0,0,0,0\n");
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  const std::string reference = "reference: {from: mesh, file: box.ply, length_unit: m}\n";
+  const std::string frames = "  {kind: markers, file: m.csv, columns: {time: t}, time_unit: ms";
+  const Recording recording = Load(Yaml(frames + "}\n", reference));
+  EXPECT_THAT(recording.times, ElementsAre(0, 0.02, 0.04));
+  EXPECT_THAT(recording.warnings,
+              ElementsAre(HasSubstr("m.csv: markers are at exactly (0, 0, 0), which counts as a "
+                                    "measured place: a in 2, b in 1 of 3 frames")));
+  EXPECT_THAT(LoadError(Yaml(frames + ", markers: [a, b, a]}\n", reference)),
+              HasSubstr("frames.markers: lists a twice"));
+  EXPECT_THAT(
+      LoadError(Yaml("  {kind: markers, file: m.csv, rate: 1 Hz, time_unit: ms}\n", reference)),
+      HasSubstr("frames.time_unit: belongs to a column"));
+}
+
 TEST_F(RecordingTest, WarnsWhenAMarkerFileContradictsTheUnit) {
   folder_.Write("m.trc",
                 "PathFileType\t4\t(X/Y/Z)\tm.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n"

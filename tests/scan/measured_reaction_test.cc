@@ -44,10 +44,25 @@ TEST_F(MeasuredReactionTest, ComponentsAreReadInTheirUnitsAndInterpolated) {
   EXPECT_NEAR(reaction.deviation, 0.002, 1e-15);
   EXPECT_EQ(reaction.tare_deviation, 0.1);
   EXPECT_TRUE(reaction.Covers(0.1));
+  EXPECT_TRUE(reaction.Covers(0.10004)) << "within a thousandth of the interval between frames";
   EXPECT_FALSE(reaction.Covers(0.11));
   EXPECT_LT((ReadingAt(reaction, 0.05) - Eigen::Vector2d(2, 0.02)).norm(), 1e-12);
   EXPECT_THAT(DescribeRecording(recording), HasSubstr("jaw: 2 values of x, z, at most 3 N"));
   EXPECT_THAT(recording.files, testing::Contains(StateOf(folder_.Path() / "load.csv")));
+}
+
+TEST_F(MeasuredReactionTest, AnotherUnitInTheNameOfAColumnIsRefused) {
+  folder_.Write("kn.csv", "t [s],Force [kN],Force (min)\n0,1,2\n1,2,3\n");
+  const auto force = [&](const std::string& value, const std::string& more) {
+    return LoadError(WithForce("{file: kn.csv, time: \"t [s]\", along: [0, 0, 1], value: \"" +
+                               value + "\", deviation: 1 mN" + more + "}"));
+  };
+  EXPECT_THAT(force("Force [kN]", ""),
+              HasSubstr("kn.csv: has a column \"Force [kN]\", but its values are read in another "
+                        "unit; say `unit: kN`"));
+  EXPECT_EQ(force("Force [kN]", ", unit: kN"), "no error");
+  EXPECT_EQ(force("Force (min)", ""), "no error") << "a remark, not a unit of force";
+  EXPECT_THAT(force("Force [kN]", ", unit: kN, time_unit: ms"), HasSubstr("say `time_unit: s`"));
 }
 
 TEST_F(MeasuredReactionTest, ADirectionIsNormalisedAndTheOppositeForceChangesItsSign) {

@@ -54,8 +54,8 @@ TEST_F(PublishedData, LiverGivesForcesNodesAndTetMesh) {
       ReadNpyMatrix(SharedData() / "liver_sequence/sequences/linear/s1/true-forces.npy");
   EXPECT_EQ(ForceAt(recording.object.forces[0], 30), Eigen::Vector3d(forces.row(30)));
   const TetMesh mesh = ReadTetMesh(recording.reference.file).mesh;
-  EXPECT_EQ(SelectNodes(recording.object.fixed[0].region, mesh.nodes).size(), 106u);
-  EXPECT_EQ(SelectNodes(*recording.object.forces[0].region, mesh.nodes).size(), 18u);
+  EXPECT_EQ(SelectNodes(recording.object.fixed[0].region, mesh).size(), 106u);
+  EXPECT_EQ(SelectNodes(*recording.object.forces[0].region, mesh).size(), 18u);
 }
 
 TEST_F(PublishedData, LidarScanHasItsCadShapeInCentimetres) {

@@ -53,6 +53,21 @@ TEST_F(RecordingTest, AGripRotatesAndShiftsSmoothlyAlongItsPath) {
               HasSubstr("r"));
 }
 
+TEST_F(RecordingTest, ATurnMustNotJumpByAFullTurn) {
+  WriteClouds(2);
+  const auto error = [&](int last) {
+    folder_.Write("arm.csv",
+                  fmt::format("t,x,y,z,rx,ry,rz\n0,0,0,0,0,0,170\n1,0,0,0,0,0,{}\n", last));
+    return LoadError(
+        Yaml("  kind: points\n  files: f/*.csv\n  rate: 1 Hz\n",
+             "gripped: [{name: arm, sphere: {center: [0, 0, 0], radius: 5 mm}, path: {file: "
+             "arm.csv, time: t, x: x, y: y, z: z, turn: {x: rx, y: ry, z: rz, unit: deg, about: "
+             "[0, 0, 0]}}}]\n"));
+  };
+  EXPECT_THAT(error(-170), AllOf(HasSubstr("arm.csv:3"), HasSubstr("more than 180°")));
+  EXPECT_EQ(error(190), "no error");
+}
+
 TEST_F(RecordingTest, PartsMayBeHeldAlongSomeAxesOnly) {
   WriteClouds(2);
   folder_.Write("plate.csv", "t,x,y,z,rx,ry,rz\n0,0,0,0,0,0,0\n1,0,0,-2,0,0,1\n");

@@ -47,6 +47,29 @@ TEST_F(RecordingCheckTest, TellsPointsThatRepeatInLaterFrames) {
   EXPECT_THAT(Findings(), ElementsAre(HasSubstr("left out of 1 later frames (2)")));
 }
 
+TEST_F(RecordingCheckTest, NamesRegionsBesideTheReferenceShape) {
+  WriteClouds(2);
+  folder_.Write("t.off",
+                "OFF\n4 4 0\n0 0 0\n100 0 0\n0 50 0\n0 0 20\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
+  const auto findings = [&](const std::string& region) {
+    return ExamineFrames(Load(
+        Yaml("  {kind: points, files: f/*.csv, rate: 10 Hz}\n",
+             "reference: {from: mesh, file: t.off}\nfixed: [{name: clamp, " + region + "}]\n")));
+  };
+  for (const char* on : {"half_space: {point: [1 mm, 0 m, 0 m], normal: [-1, 0, 0]}",
+                         "box: {min: [-9 mm, -9 mm, -9 mm], max: [1 mm, 99 mm, 99 mm]}",
+                         "sphere: {center: [-1 mm, 0 m, 0 m], radius: 2 mm}"})
+    EXPECT_THAT(findings(on), IsEmpty()) << on;
+  for (const char* beside : {"half_space: {point: [1 m, 0 m, 0 m], normal: [1, 0, 0]}",
+                             "box: {min: [-9 mm, -9 mm, -9 mm], max: [-1 mm, 99 mm, 99 mm]}",
+                             "sphere: {center: [-3 mm, 0 m, 0 m], radius: 2 mm}"})
+    EXPECT_THAT(findings(beside), ElementsAre(testing::AllOf(
+                                      HasSubstr("region \"clamp\""),
+                                      HasSubstr("holds nothing of the reference shape, which "
+                                                "extends from (0, 0, 0) to (0.1, 0.05, 0.02) m"))))
+        << beside;
+}
+
 TEST_F(RecordingCheckTest, SaysWhereItStopped) {
   WriteClouds(5);
   EXPECT_THAT(Findings(24), ElementsAre("only the first 2 of 5 frames were examined"));

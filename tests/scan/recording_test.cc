@@ -52,9 +52,11 @@ TEST_F(RecordingTest, ReadsWhatIsKnownOfTheObjectInSi) {
   EXPECT_DOUBLE_EQ(frame.cloud.points(0, 11), 0.102);
   EXPECT_EQ(recording.files.size(), 6u);
   const std::string text = DescribeRecording(recording);
-  for (const char* part : {"3 point clouds, 0 s to 0.1 s", "12 points, 100 mm × 50 mm × 20 mm",
-                           "1070 kg/m³", "clamp: half-space", "hand: sphere", "given path",
-                           "pull: 2 values, at most 0.3 N", "an open sheet 2 mm thick"}) {
+  for (const char* part :
+       {"3 point clouds, 0 s to 0.1 s",
+        "12 points, 100 mm × 50 mm × 20 mm, from (0, 0, 0) to (0.1, 0.05, 0.02) m", "1070 kg/m³",
+        "clamp: half-space", "hand: sphere", "given path", "pull: 2 values, at most 0.3 N",
+        "an open sheet 2 mm thick"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
 }
@@ -219,6 +221,14 @@ TEST_F(RecordingTest, DoubtsLoadsInAnotherUnitOfTime) {
   EXPECT_THAT(
       Load(Yaml(frames, "gripped: [{nodes: [1], path: {file: load.csv, time: t}}]\n")).warnings,
       ElementsAre(HasSubstr("the path of grip 1 (")));
+}
+
+TEST_F(RecordingTest, HasTheNameOfItsFolder) {
+  folder_.Write("bar/p.csv", "x,y,z\n" + Cloud(12));
+  folder_.Write("bar/recording.yaml",
+                "schema_version: 1\nlength_unit: mm\nframes: {kind: points, files: [p.csv]}\n");
+  EXPECT_EQ(LoadRecording(folder_.Path() / "bar").name, "bar");
+  EXPECT_EQ(LoadRecording(folder_.Path() / "bar/.").name, "bar");
 }
 
 TEST_F(RecordingTest, DoubtsATableWhoseFirstRowWasTakenForNames) {

@@ -84,7 +84,7 @@ TEST(RecordingWriter, WritesWhatIsReadBack) {
   EXPECT_THAT(recording.object.grips[1].markers, ElementsAre("m 1", "b:2"));
   ASSERT_EQ(recording.object.forces.size(), 1u);
   EXPECT_EQ(ForceAt(recording.object.forces[0], 0.5).z(), -0.25);
-  EXPECT_EQ(SelectNodes(*recording.object.forces[0].region, mesh.nodes), (std::vector<int>{1, 3}));
+  EXPECT_EQ(SelectNodes(*recording.object.forces[0].region, mesh), (std::vector<int>{1, 3}));
   EXPECT_EQ(recording.reference.source, ReferenceSource::kTetMesh);
   EXPECT_EQ(ReadTetMesh(recording.reference.file).mesh.nodes, mesh.nodes);
 }

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "core/npy.h"
+#include "geometry/sheet.h"
 #include "scan/similarity.h"
 #include "scan/test_files.h"
+#include "support/box_mesh.h"
 
 namespace lacuna {
 namespace {
@@ -15,6 +17,7 @@ using ::testing::HasSubstr;
 
 const Eigen::Matrix3Xd kNodes =
     (Eigen::Matrix3Xd(3, 4) << 0, 0.01, 0.02, 0.03, 0, 0, 0, 0, 0, 0, 0.01, 0.01).finished();
+const TetMesh kMesh{kNodes, Eigen::Vector4i(0, 1, 2, 3)};
 
 Region Read(const std::string& yaml, const std::filesystem::path& folder = {}) {
   const Config config = Config::Parse(yaml, "recording.yaml");
@@ -25,23 +28,67 @@ Region Read(const std::string& yaml, const std::filesystem::path& folder = {}) {
 
 TEST(Region, SelectsTheNodesInsideEachShape) {
   const Region box = Read("box: {min: [0, -1 mm, -1 mm], max: [1 cm, 1 mm, 1 mm]}");
-  EXPECT_THAT(SelectNodes(box, kNodes), ElementsAre(0, 1));  // the border belongs to the region
+  EXPECT_THAT(SelectNodes(box, kMesh), ElementsAre(0, 1));  // the border belongs to the region
   const Region sphere = Read("sphere: {center: [0.02 m, 0, 0.01 m], radius: 10 mm}");
-  EXPECT_THAT(SelectNodes(sphere, kNodes), ElementsAre(2, 3));
+  EXPECT_THAT(SelectNodes(sphere, kMesh), ElementsAre(2, 3));
   const Region half_space = Read("half_space: {point: [15 mm, 0, 0], normal: [2, 0, 0]}");
-  EXPECT_THAT(SelectNodes(half_space, kNodes), ElementsAre(2, 3));
-  EXPECT_THAT(SelectNodes(Read("nodes: [3, 1, 3]"), kNodes), ElementsAre(1, 3));
+  EXPECT_THAT(SelectNodes(half_space, kMesh), ElementsAre(2, 3));
+  EXPECT_THAT(SelectNodes(Read("nodes: [3, 1, 3]"), kMesh), ElementsAre(1, 3));
 }
 
 TEST(Region, ReadsNodeNumbersFromTextAndNumpyFiles) {
   const TestFolder folder;
   folder.Write("nodes.txt", "3\n0\n");
   WriteNpyIntegers(folder.Path() / "nodes.npy", MatrixXi64::Constant(1, 1, 2));
-  EXPECT_THAT(SelectNodes(Read("nodes_file: nodes.txt", folder.Path()), kNodes), ElementsAre(0, 3));
-  EXPECT_THAT(SelectNodes(Read("nodes_file: nodes.npy", folder.Path()), kNodes), ElementsAre(2));
+  EXPECT_THAT(SelectNodes(Read("nodes_file: nodes.txt", folder.Path()), kMesh), ElementsAre(0, 3));
+  EXPECT_THAT(SelectNodes(Read("nodes_file: nodes.npy", folder.Path()), kMesh), ElementsAre(2));
+  folder.Write("row.txt", "3 0\n");
+  EXPECT_THAT(SelectNodes(Read("nodes_file: row.txt", folder.Path()), kMesh), ElementsAre(0, 3));
   folder.Write("half.txt", "0.5\n");
   EXPECT_THAT(ErrorOf([&] { Read("nodes_file: half.txt", folder.Path()); }),
               HasSubstr("got 0.5 as a node number"));
+}
+
+// pandas writes its index in front of each row.
+TEST(Region, RefusesNodeNumbersBesideAnotherColumn) {
+  const TestFolder folder;
+  folder.Write("index.csv", ",node\n0,3\n1,1\n");
+  folder.Write("one.csv", "index,node\n0,3\n");
+  for (const std::string file : {"index.csv", "one.csv"})
+    EXPECT_THAT(ErrorOf([&] { Read("nodes_file: " + file, folder.Path()); }),
+                AllOf(HasSubstr(file), HasSubstr("has 2 columns")));
+}
+
+// Lists the nodes of `file` on the plane x = 0 and compares them with the half-space beyond it.
+void ExpectTheFaceOf(const Eigen::Matrix3Xd& file, bool is_sheet, const TetMesh& mesh) {
+  NodeRegion listed;
+  for (int i = 0; i < file.cols(); ++i)
+    if (file(0, i) == 0) listed.nodes.push_back(i);
+  listed.file_nodes = static_cast<int>(file.cols());
+  listed.is_sheet = is_sheet;
+  const Region half_space = Read("half_space: {point: [0, 0, 0], normal: [-1, 0, 0]}");
+  const std::vector<int> nodes = SelectNodes({"clamp", listed}, mesh);
+  EXPECT_EQ(nodes, SelectNodes(half_space, mesh));
+  EXPECT_GT(nodes.size(), listed.nodes.size());
+}
+
+TEST(Region, OfListedNodesHasTheNodesThatTheMeshAddsBetweenThem) {
+  const TetMesh linear = BoxMesh({0, 0, 0}, {2, 1, 1}, {2, 2, 2});
+  ExpectTheFaceOf(linear.nodes, false, ToQuadratic(linear));
+  TriMesh sheet;
+  sheet.vertices = (Eigen::Matrix3Xd(3, 4) << 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0).finished();
+  sheet.triangles = (Eigen::Matrix3Xi(3, 2) << 0, 1, 1, 3, 2, 2).finished();
+  const TetMesh thick = ThickenToTets(sheet, 0.1, 2);
+  ExpectTheFaceOf(sheet.vertices, true, thick);
+  ExpectTheFaceOf(sheet.vertices, true, ToQuadratic(thick));
+}
+
+TEST(Region, OfListedNodesHasNoOtherNodesWhereTheFileNumbersThemAll) {
+  const TetMesh mesh = ToQuadratic(BoxMesh({0, 0, 0}, {1, 1, 1}, {1, 1, 1}));
+  NodeRegion corners{{0, 2, 4, 6}};
+  EXPECT_EQ(SelectNodes({"clamp", corners}, mesh), corners.nodes);
+  corners.file_nodes = static_cast<int>(mesh.NodeCount());
+  EXPECT_EQ(SelectNodes({"clamp", corners}, mesh), corners.nodes);
 }
 
 TEST(Region, ReportsMistakes) {
@@ -50,10 +97,10 @@ TEST(Region, ReportsMistakes) {
               HasSubstr("describes 2 shapes"));
   EXPECT_THAT(ErrorOf([] { Read("box: {min: [1 m, 0, 0], max: [0, 1 m, 1 m]}"); }),
               HasSubstr("box.max: lies below min"));
-  EXPECT_THAT(ErrorOf([] { SelectNodes(Read("nodes: [4]"), kNodes); }),
+  EXPECT_THAT(ErrorOf([] { SelectNodes(Read("nodes: [4]"), kMesh); }),
               HasSubstr("region \"clamp\" lists node 4; the reference shape has 4 nodes"));
   EXPECT_THAT(
-      ErrorOf([] { SelectNodes(Read("sphere: {center: [9 m, 0, 0], radius: 1 mm}"), kNodes); }),
+      ErrorOf([] { SelectNodes(Read("sphere: {center: [9 m, 0, 0], radius: 1 mm}"), kMesh); }),
       HasSubstr("region \"clamp\" (sphere around (9, 0, 0) m of radius 0.001 m) holds no "
                 "node"));
 }

@@ -33,5 +33,18 @@ TEST(TimeSpan, DoesNotDoubtASeriesThatCoversTheRecording) {
   EXPECT_EQ(DoubtOfTimeSpan(Eigen::Vector2d(0, 1), constant, 0, 0.5), "");
 }
 
+// The last of 50 frames at 30 Hz is at 1.6333… s, which a table gives with five decimals.
+TEST(TimeSpan, OfASeriesMayBeRounded) {
+  std::vector<double> frames;
+  for (int k = 0; k < 50; ++k) frames.push_back(k / 30.0);
+  const double margin = TimeMargin(frames), last = frames.back();
+  EXPECT_NEAR(margin, 1e-3 / 30, 1e-15);
+  EXPECT_TRUE(CoversTimes(Eigen::Vector2d(0, 1.63333), 0, last, margin));
+  EXPECT_TRUE(CoversTimes(Eigen::Vector2d(0.00003, 2), 0, last, margin));
+  EXPECT_FALSE(CoversTimes(Eigen::Vector2d(0, 1.633), 0, last, margin));
+  EXPECT_FALSE(CoversTimes(Eigen::Vector2d(0.001, 2), 0, last, margin));
+  EXPECT_GT(TimeMargin({1e3}), 0) << "one frame has no interval";
+}
+
 }  // namespace
 }  // namespace lacuna
