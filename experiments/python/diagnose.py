@@ -18,9 +18,11 @@ refits = int(sys.argv[2]) if len(sys.argv) > 2 else None  # None: as many as lac
 run = lacuna.fit(experiment)
 model = run.model
 
-# %% The parameters, in SI units, with their 95 % intervals.
+# %% The parameters, in SI units: the value of the fit, the one with infinitely fine elements and
+# time steps (blank: not computed), and the 95 % interval of the latter.
 for parameter in model.parameters:
-    print(f"{parameter.name:35} {parameter.value:11.4g}   "
+    limit = "" if parameter.at_limit is None else f"{parameter.at_limit:.4g}"
+    print(f"{parameter.name:35} {parameter.value:11.4g} {limit:>11}   "
           f"{parameter.low:11.4g} to {parameter.high:11.4g} {parameter.unit}")
 
 # %% The error of each recording, on frames that were fitted and on those that were not.

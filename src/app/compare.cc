@@ -11,8 +11,11 @@
 #include "comparison/compared_motion.h"
 #include "comparison/comparison_files.h"
 #include "comparison/run_comparison.h"
+#include "core/error.h"
+#include "core/hash.h"
 #include "core/progress.h"
 #include "core/text_layout.h"
+#include "record/run_directory.h"
 #include "report/comparison_report.h"
 #include "report/headline.h"
 #include "report/reported_run.h"
@@ -52,10 +55,21 @@ void PrintFiles(const ComparisonRecord& record, const std::string& run) {
   }
 }
 
+// The comparison that the run holds. Throws InputError where there is none of its fit.
+ComparisonRecord StoredComparison(const std::filesystem::path& run) {
+  const std::filesystem::path file = run / "comparison/comparison.json";
+  ComparisonRecord stored = ReadComparisonFile(file);
+  if (!IsComparisonOf(HashFile(FinishedStage(run, "calibration") / "calibration.json"), file))
+    throw InputError(
+        {file.string()},
+        fmt::format("is of an earlier fit; `lacuna compare {}` makes a new one", run.string()));
+  return stored;
+}
+
 int Compare(const CompareArguments& arguments, const OutputOptions& output) {
   const std::filesystem::path folder = std::filesystem::path(arguments.run) / "comparison";
   if (arguments.stored) {
-    const ComparisonRecord stored = ReadComparisonFile(folder / "comparison.json");
+    const ComparisonRecord stored = StoredComparison(arguments.run);
     if (output.json) PrintRecord(folder / "comparison.json");
     if (output.PrintsText()) PrintReport(stored, output.verbose);
     return 0;

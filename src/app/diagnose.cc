@@ -96,7 +96,7 @@ int RunDiagnose(const DiagnoseArguments& arguments, const OutputOptions& output)
   const std::filesystem::path run = arguments.run;
   if (output.json) PrintRecord(run / "diagnosis/diagnosis.json");
   if (output.PrintsText()) {
-    fmt::print("{}", output.verbose ? DiagnosisReport(diagnosis, run)
+    fmt::print("{}", output.verbose ? DiagnosisReport(diagnosis, fitted.record, run)
                                     : VerdictWithNames(diagnosis) + "\n");
     const std::string agreement = ExplainAgreement(diagnosis.agreement);
     if (!output.verbose && !agreement.empty()) fmt::print("{}", Wrapped(agreement, "", ""));

@@ -97,6 +97,7 @@ void AddFigures(CLI::App* app, std::function<int()>* command) {
                       "Folder where `lacuna table1` left its results (results/table1)");
   figures->add_option("--only", arguments->only, "These figures only, e.g. --only 1,3")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::IsMember({1, 3, 4, 5, 6}));
   figures->callback(
       [command, arguments] { *command = [arguments] { return RunFigures(*arguments); }; });

@@ -39,6 +39,10 @@ int Import(const ImportArguments& arguments) {
     if (material.young_modulus)
       fmt::print(" E = {:.6g} Pa, nu = {:.6g}", *material.young_modulus, *material.poisson_ratio);
     if (material.density) fmt::print(" density = {:.6g} kg/m^3", *material.density);
+    if (material.is_instantaneous) fmt::print("; the modulus is the instantaneous one");
+    if (model.materials.size() > 1)
+      fmt::print("; {}",
+                 &material == MaterialOfBody(model) ? "taken for the whole body" : "not used");
     fmt::print("\n");
   }
   for (const std::string& note : model.notes) fmt::print("  note: {}\n", note);

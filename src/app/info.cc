@@ -9,11 +9,14 @@
 
 #include "app/commands.h"
 #include "calibration/calibration_run.h"
+#include "core/config.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "experiment/scatter_findings.h"
 #include "geometry/mesh_io.h"
 #include "geometry/surface_check.h"
 #include "meshing/tet_quality.h"
+#include "prediction/prediction_study_reader.h"
 #include "record/manifest.h"
 #include "record/run_directory.h"
 #include "record/run_record.h"
@@ -24,6 +27,15 @@
 namespace lacuna {
 namespace {
 
+// The size of a mesh and where it lies.
+std::string InOwnUnit(const Eigen::AlignedBox3d& box) {
+  const Eigen::Vector3d size = box.sizes(), min = box.min(), max = box.max();
+  return fmt::format(
+      "{:.6g} x {:.6g} x {:.6g}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) in the "
+      "file's own unit",
+      size.x(), size.y(), size.z(), min.x(), min.y(), min.z(), max.x(), max.y(), max.z());
+}
+
 void DescribeSurface(const std::filesystem::path& file) {
   const TriMeshFile read = ReadTriMesh(file);
   const SurfaceReport report = CheckSurface(read.mesh);
@@ -31,8 +43,7 @@ void DescribeSurface(const std::filesystem::path& file) {
   const auto say = [](bool yes) { return yes ? "yes" : "no"; };
   fmt::print("{}: a surface\n  vertices {}, triangles {}, components {}\n", file.string(),
              report.vertices, report.triangles, report.components);
-  fmt::print("  size {:.6g} x {:.6g} x {:.6g} in the file's own unit, area {:.6g}, volume {:.6g}\n",
-             box.sizes()[0], box.sizes()[1], box.sizes()[2], report.area, report.volume);
+  fmt::print("  size {}, area {:.6g}, volume {:.6g}\n", InOwnUnit(box), report.area, report.volume);
   fmt::print("  edges {:.4g} to {:.4g}, mean {:.4g}; smallest angle {:.1f} deg\n", report.min_edge,
              report.max_edge, report.mean_edge, report.min_angle * 180 / M_PI);
   fmt::print("  closed {}, manifold {}, consistently oriented {}, free of self-intersections {}\n",
@@ -45,8 +56,9 @@ void DescribeTets(const std::filesystem::path& file) {
   const TetMeshFile read = ReadTetMesh(file);
   const TetQuality quality = MeasureTets(read.mesh);
   fmt::print("{}: a tetrahedral mesh of order {}\n", file.string(), read.mesh.Order());
-  fmt::print("  nodes {}, tetrahedra {}, volume {:.6g} in the file's own unit cubed\n",
-             read.mesh.NodeCount(), quality.tets, quality.total_volume);
+  fmt::print("  nodes {}, tetrahedra {}\n", read.mesh.NodeCount(), quality.tets);
+  fmt::print("  size {}, volume {:.6g}\n", InOwnUnit(BoundingBox(read.mesh.nodes)),
+             quality.total_volume);
   fmt::print(
       "  radius-edge ratio {:.3f} mean, {:.3f} worst; dihedral angles {:.1f} to {:.1f} deg\n",
       quality.radius_edge_ratio.mean, quality.radius_edge_ratio.max,
@@ -65,10 +77,17 @@ void DescribeRun(const std::filesystem::path& folder) {
   for (const auto& [stage, result] : manifest.stages)
     FinishedStage(folder, stage);  // throws where it is damaged
   if (manifest.stages.count("calibration") > 0) {
-    fmt::print("{}", CalibrationReport(LoadCalibration(folder)));
+    const CalibrationRecord fit = LoadCalibration(folder);
+    fmt::print("{}", CalibrationReport(fit));
     const std::filesystem::path diagnosis = folder / "diagnosis" / "diagnosis.json";
-    if (std::filesystem::exists(diagnosis))
-      fmt::print("{}", DiagnosisReport(ReadDiagnosisFile(diagnosis), folder));
+    if (!std::filesystem::exists(diagnosis)) return;
+    const std::string hash = HashFile(FinishedStage(folder, "calibration") / "calibration.json");
+    if (IsDiagnosisOf(hash, diagnosis.parent_path()))
+      fmt::print("{}", DiagnosisReport(ReadDiagnosisFile(diagnosis), fit, folder));
+    else
+      fmt::print(
+          "\n{} is of an earlier fit and is not shown; `lacuna diagnose {}` makes a new one\n",
+          diagnosis.string(), folder.string());
     return;
   }
   const RunRecord record = LoadRunRecord(folder / "results");
@@ -98,6 +117,20 @@ void ShowRecording(const Recording& recording) {
     fmt::print("  {:<12} {}\n", "warning", finding);
 }
 
+// Experiments and scenes, which are recognised as `lacuna validate` does.
+void RefuseExperiment(const std::filesystem::path& file) {
+  const Config config = Config::Load(file);
+  const char* kind = config.Has("bar")           ? "a scene"
+                     : IsPredictionStudy(config) ? "an experiment for `lacuna fit`"
+                     : config.Has("recording")   ? "an experiment for `lacuna reconstruct`"
+                                                 : nullptr;
+  if (kind == nullptr) return;
+  throw InputError(SourcePosition{file.string()},
+                   fmt::format("is {0}; `lacuna validate {1} --show` checks it and prints its "
+                               "values, `lacuna info` shows recordings, meshes and runs",
+                               kind, file.string()));
+}
+
 int Info(const std::filesystem::path& path) {
   constexpr std::array kSurfaces{".ply", ".obj", ".stl", ".off"};
   constexpr std::array kTets{".msh", ".node", ".ele", ".mesh", ".tet", ".txt"};
@@ -110,6 +143,7 @@ int Info(const std::filesystem::path& path) {
   if (std::filesystem::exists(path / "manifest.json")) {
     DescribeRun(path);
   } else if (std::filesystem::is_directory(path) || extension == ".yaml") {
+    if (!std::filesystem::is_directory(path)) RefuseExperiment(path);
     ShowRecording(LoadRecording(path));
   } else if (is_in(kSurfaces)) {
     DescribeSurface(path);

@@ -45,6 +45,19 @@ std::string UnknownCommand(const CLI::App& app, const std::string& given) {
                      lacuna::Suggestion(given, known));
 }
 
+// Why a command cannot use the first of the arguments that nothing has taken.
+std::string UnexpectedArgument(const CLI::App& app, const std::vector<std::string>& remaining) {
+  const std::string& given = remaining.front();
+  const size_t equals = given.find('=');
+  const CLI::Option* option = app.get_option_no_throw(given.substr(0, equals));
+  if (option == nullptr)
+    return fmt::format("unexpected argument \"{}\"; --help lists those that are known", given);
+  const bool has_value = option->get_items_expected_min() > 0 && equals == std::string::npos;
+  const std::string value = !has_value ? "" : remaining.size() > 1 ? " " + remaining[1] : " VALUE";
+  return fmt::format("\"{0}\" stands before the command: lacuna {0}{1} {2} ...", given, value,
+                     app.get_subcommands().front()->get_name());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -87,12 +100,10 @@ int main(int argc, char** argv) {
   lacuna::AddDocumentOption(&app);
   if (const std::optional<int> ended = lacuna::ParseCommandLine(&app, argc, argv)) return *ended;
   if (!app.remaining(true).empty()) {
-    const std::string unexpected = app.remaining(true).front();
-    fmt::print(stderr, "lacuna: {}\n",
-               command
-                   ? fmt::format("unexpected argument \"{}\"; --help lists those that are known",
-                                 unexpected)
-                   : UnknownCommand(app, unexpected));
+    const std::vector<std::string> remaining = app.remaining(true);
+    fmt::print(
+        stderr, "lacuna: {}\n",
+        command ? UnexpectedArgument(app, remaining) : UnknownCommand(app, remaining.front()));
     return lacuna::kUnusableInput;
   }
   if (!command) {

@@ -28,7 +28,8 @@ void AddOutputOptions(CLI::App* command, OutputOptions* output) {
       ->excludes(verbose)
       ->excludes(json);
   json->excludes(verbose);
-  command->add_flag("--no-report{false}", output->report, "Do not write the report's page");
+  command->add_flag_callback(
+      "--no-report", [output] { output->report = false; }, "Do not write the report's page");
 }
 
 void PrintWarnings(const OutputOptions& output, const std::vector<std::string>& warnings) {

@@ -22,9 +22,10 @@ int RunPlanCommand(const PlanArguments& arguments, const OutputOptions& output) 
   if (!arguments.protocols.empty()) protocols = arguments.protocols;
   const PlanRecord plan = RunPlan(arguments.run, protocols, &progress);
   if (output.json) PrintRecord(PlanFile(arguments.run));
+  const bool is_playable = !plan.outcomes.empty() && plan.outcomes.front().IsPlayable();
   if (output.PrintsText()) {
     fmt::print("{}", output.verbose ? PlanReport(plan) : PlanSummary(plan));
-    if (!plan.outcomes.empty() && !plan.outcomes.front().experiment.empty()) {
+    if (is_playable) {
       const std::filesystem::path experiment =
           PlanFile(arguments.run).parent_path() / plan.outcomes.front().experiment;
       fmt::print("\nThe recording is described in {}.\nOnce it is made: lacuna fit {}\n",
@@ -32,7 +33,7 @@ int RunPlanCommand(const PlanArguments& arguments, const OutputOptions& output) 
                  experiment.string());
     }
   }
-  return 0;
+  return is_playable ? 0 : 1;
 }
 
 }  // namespace

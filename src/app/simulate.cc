@@ -12,6 +12,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file_name.h"
+#include "experiment/listed_regions.h"
 #include "experiment/scene.h"
 #include "geometry/mesh_io.h"
 #include "prediction/played_recording.h"
@@ -190,6 +191,7 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
     WriteTetMesh(written / "object.msh", mesh);
     MarkerRecording recording = AsRecording(item, played, study.noise, r + 1);
     recording.reference = written / "object.msh";
+    ListNodesOfMesh(mesh, RegionsIn(&recording.object));
     recording.comment =
         fmt::format("{}\nPlayed from {}.", kSimulated, study.file.filename().string());
     WriteMarkerRecording(written, recording);

@@ -39,6 +39,12 @@ StatedNoise NoiseOf(const PredictionStudy& study, const PredictedRecording& item
   return {study.noise_is_estimated ? 0 : study.noise, "noise"};
 }
 
+void PrintUse(const PredictedRecording& item) {
+  const size_t fitted = FittedFrames(item).size();
+  fmt::print("frames: {}: {} are fitted, {} are held out\n", item.name, fitted,
+             item.frames.size() - fitted);
+}
+
 int Validate(const std::filesystem::path& path, bool show) {
   nlohmann::json resolved;
   if (std::filesystem::is_directory(path) || path.filename() == "recording.yaml") {
@@ -58,6 +64,7 @@ int Validate(const std::filesystem::path& path, bool show) {
       for (const PredictedRecording& item : study.recordings)
         PrintExamined(ExamineRecording(item.recording, NoiseOf(study, item), kMostPoints),
                       item.name + ": ");
+      for (const PredictedRecording& item : study.recordings) PrintUse(item);
       if (study.density != study.recordings.front().recording.object.density)
         PrintWarnings({DoubtOfDensity(study.density)});
       const ReferenceBody body = MakeReferenceBody(study);

@@ -1,5 +1,7 @@
 #include "comparison/compared_motion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -97,6 +99,20 @@ void KeepMotionWithForce(const RecordingModel& model, const Eigen::VectorXd& nui
 
 }  // namespace
 
+std::optional<std::string> NoteOnScale(const std::vector<FittedParameter>& parameters) {
+  using Verdict = ParameterEstimate::Verdict;
+  for (const FittedParameter& parameter : parameters) {
+    const Verdict verdict = parameter.estimate.verdict;
+    if (parameter.unit != "Pa" || (verdict != Verdict::kFlat && verdict != Verdict::kDead))
+      continue;
+    return fmt::format(
+        "These recordings do not determine {}, whose value is one of many: stresses and forces of "
+        "the model, and the unexplained force, are known up to a common factor only.",
+        parameter.name);
+  }
+  return std::nullopt;
+}
+
 void CompareMotion(const std::filesystem::path& run, Progress* progress, Comparison* comparison) {
   const auto note_omission = [&](const std::string& why) {
     comparison->record.notes.push_back(
@@ -110,6 +126,8 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
   } catch (const InputError& error) {
     return note_omission(error.what());
   }
+  if (const auto note = NoteOnScale(fitted.record.parameters))
+    comparison->record.notes.push_back(*note);
   const CalibrationProblem problem(fitted.study, fitted.mesh);
   progress->Begin("replay", static_cast<int64_t>(comparison->residuals.size()));
   for (size_t r = 0; r < comparison->residuals.size(); ++r) {

@@ -3,9 +3,13 @@
 #define LACUNA_COMPARISON_COMPARED_MOTION_H_
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "comparison/comparison.h"
 #include "core/progress.h"
+#include "record/calibration_record.h"
 
 namespace lacuna {
 
@@ -15,6 +19,10 @@ namespace lacuna {
 // or a recording consists of scans, a note is added instead. Throws InputError when files cannot be
 // written, and Interrupted.
 void CompareMotion(const std::filesystem::path& run, Progress* progress, Comparison* comparison);
+
+// What follows for stresses and forces where the recordings do not determine a fitted modulus, as
+// displacements without a known force do not; nothing where they determine all.
+std::optional<std::string> NoteOnScale(const std::vector<FittedParameter>& parameters);
 
 }  // namespace lacuna
 

@@ -27,8 +27,8 @@ NoiseFloor MeasureNoiseFloor(const RecordedResiduals& residuals, double sigma) {
                   kFewestFramesAtRest);
   std::vector<double> deviations;
   for (const StaticSpan& rest : rests) {
-    result.rests.push_back(
-        {residuals.times[rest.first], residuals.times[rest.last], rest.deviation, rest.drift});
+    result.rests.push_back({residuals.times[rest.first], residuals.times[rest.last], rest.deviation,
+                            rest.drift, rest.noise_drift});
     if (!std::isnan(rest.deviation)) deviations.push_back(rest.deviation);
   }
   if (!deviations.empty()) {

@@ -18,16 +18,16 @@ namespace {
 // Distance, m, of each place from the nearest node that the recording fixes or moves. Empty if it
 // has no grip.
 Eigen::VectorXd GripDistances(const Recording& recording, const Eigen::Matrix3Xd& places,
-                              const Eigen::Matrix3Xd& nodes) {
+                              const TetMesh& mesh) {
   std::vector<Region> regions;
   for (const RecordedSupport& support : recording.object.fixed) regions.push_back(support.region);
   for (const RecordedGrip& grip : recording.object.grips) regions.push_back(grip.region);
   Eigen::VectorXd distances =
       Eigen::VectorXd::Constant(places.cols(), std::numeric_limits<double>::infinity());
   for (const Region& region : regions)
-    for (const int node : SelectNodes(region, nodes))
+    for (const int node : SelectNodes(region, mesh))
       for (Eigen::Index m = 0; m < distances.size(); ++m)
-        distances[m] = std::min(distances[m], (places.col(m) - nodes.col(node)).norm());
+        distances[m] = std::min(distances[m], (places.col(m) - mesh.nodes.col(node)).norm());
   return regions.empty() ? Eigen::VectorXd() : distances;
 }
 
@@ -67,7 +67,7 @@ void AddRecordingDetails(const std::filesystem::path& run, const CalibrationReco
       compared.grip_distance = GripDistances(
           recording,
           compared.is_scan ? record.recordings[r].scan->places : recording.markers.places,
-          body.mesh.nodes);
+          body.mesh);
     }
   } catch (const InputError& error) {
     problem = error.what();

@@ -10,20 +10,32 @@
 namespace lacuna {
 namespace {
 
+std::string ParameterLine(const PortableParameter& parameter) {
+  const std::string value =
+      fmt::format("{} = {} {}", parameter.name, fmt::join(parameter.values, ", "), parameter.unit);
+  if (!parameter.fitted) return value + " (held)";
+  const std::string interval =
+      fmt::format("95 % interval {:.6g} to {:.6g}", parameter.low, parameter.high);
+  if (!parameter.at_limit) return fmt::format("{} (fitted; {})", value, interval);
+  return fmt::format("{} (fitted; at_limit {:.6g}, {})", value, *parameter.at_limit, interval);
+}
+
 std::vector<std::string> ProvenanceLines(const PortableModel& model) {
   std::vector<std::string> lines{
       fmt::format("Written by lacuna {} from the run {}", model.program_version, model.run),
       fmt::format("Experiment {}, recording {}", model.experiment, model.recording),
       "Units are SI: m, kg, s, N, Pa",
       fmt::format("Time 0 of the motion is {} s on the model's clock", model.start)};
+  bool has_limit = false;
   for (const PortableParameter& parameter : model.parameters) {
-    std::string line = fmt::format("{} = {} {}", parameter.name, fmt::join(parameter.values, ", "),
-                                   parameter.unit);
-    line += parameter.fitted ? fmt::format(" (fitted; 95 % interval {:.6g} to {:.6g})",
-                                           parameter.low, parameter.high)
-                             : " (held)";
-    lines.push_back(line);
+    lines.push_back(ParameterLine(parameter));
+    has_limit |= parameter.at_limit.has_value();
   }
+  if (has_limit)
+    lines.emplace_back(
+        "The file has the fitted values, which belong to the elements and time steps of the fit; "
+        "at_limit is the value with infinitely fine elements and time steps, and the interval is "
+        "that of at_limit");
   return lines;
 }
 

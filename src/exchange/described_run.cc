@@ -25,7 +25,7 @@ size_t FindRecording(const FittedRun& fitted, const std::string& name) {
 }
 
 NamedNodes Select(const Region& region, const std::string& name, const TetMesh& mesh) {
-  return {name, SelectNodes(region, mesh.nodes)};
+  return {name, SelectNodes(region, mesh)};
 }
 
 PortableNames NamesOf(const PredictedRecording& item, const TetMesh& mesh) {
@@ -47,7 +47,8 @@ std::vector<PortableParameter> ParametersOf(const CalibrationRecord& record) {
                           {parameter.estimate.value},
                           true,
                           parameter.estimate.low,
-                          parameter.estimate.high});
+                          parameter.estimate.high,
+                          parameter.at_limit});
   for (const HeldParameter& parameter : record.held)
     parameters.push_back({parameter.name, parameter.unit, parameter.values});
   return parameters;

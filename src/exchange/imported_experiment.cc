@@ -23,12 +23,6 @@ constexpr double kSoftModulus = 1e5;  // Pa
 constexpr double kSoftPoisson = 0.45;
 constexpr double kWaterDensity = 1000;  // kg/m³
 
-const ImportedMaterial* MaterialOf(const ImportedModel& model) {
-  for (const ImportedMaterial& material : model.materials)
-    if (material.young_modulus) return &material;
-  return model.materials.empty() ? nullptr : &model.materials.front();
-}
-
 constexpr const char* kRecordingFile = "recording.yaml";
 
 void RequireUsableName(const std::string& name, const std::filesystem::path& source) {
@@ -90,27 +84,41 @@ double ModulusOf(const ImportedMaterial* material) {
   return HasElasticity(material) ? *material->young_modulus : kSoftModulus;
 }
 
-std::string MaterialText(const ImportedMaterial* material) {
+constexpr const char* kNotInFile = "   # TO DO: not in the file\n";
+
+std::string DensityText(const ImportedMaterial* material) {
+  const bool is_known = material != nullptr && material->density.has_value();
+  return fmt::format("density: {} kg/m^3{}", is_known ? *material->density : kWaterDensity,
+                     is_known ? "\n" : kNotInFile);
+}
+
+// `count` is the number of materials in the file.
+std::string MaterialText(const ImportedMaterial* material, size_t count) {
   const bool is_known = HasElasticity(material);
-  const double density =
-      material != nullptr && material->density ? *material->density : kWaterDensity;
-  return fmt::format(
-      "density: {} kg/m^3{}\nmaterial: {{law: {}, young_modulus: {} Pa, poisson_ratio: {}}}{}\n",
-      density, material != nullptr && material->density ? "" : "   # TO DO: not in the file",
-      SaintVenantKirchhoffCard().type, ModulusOf(material),
-      is_known ? *material->poisson_ratio : kSoftPoisson,
-      is_known ? "" : "   # TO DO: not in the file");
+  std::string text = fmt::format("material: {{law: {}, young_modulus: {} Pa, poisson_ratio: {}}}",
+                                 SaintVenantKirchhoffCard().type, ModulusOf(material),
+                                 is_known ? *material->poisson_ratio : kSoftPoisson);
+  if (!is_known) return text + kNotInFile;
+  std::vector<std::string> doubts;
+  if (count > 1)
+    doubts.push_back(
+        fmt::format("the file has {} materials; that of {} is taken for the whole body", count,
+                    CommentText(material->name)));
+  if (material->is_instantaneous)
+    doubts.emplace_back("the modulus of the shortest times (MODULI=INSTANTANEOUS), which relaxes");
+  if (!doubts.empty()) text += fmt::format("   # TO DO: {}", fmt::join(doubts, "; "));
+  return text + "\n";
 }
 
 std::string ExperimentText(const ImportedModel& model, const std::string& name,
                            const std::string& source) {
-  const ImportedMaterial* material = MaterialOf(model);
+  const ImportedMaterial* material = MaterialOfBody(model);
   std::string text = fmt::format(
       "# Made from {}. docs/prediction.md has the keys.\n"
       "#   lacuna fit {}.yaml\n"
       "schema_version: 1\nname: {}\noutput: {}\n",
       source, name, QuotedText(name), QuotedText(name + "_run"));
-  text += MaterialText(material);
+  text += DensityText(material) + MaterialText(material, model.materials.size());
   for (const ImportedMaterial& other : model.materials)
     if (&other != material)
       text += fmt::format("# The file has another material, {}, which is not used\n",
@@ -144,6 +152,12 @@ ImportedModel InSiUnits(ImportedModel model, InpUnits units) {
     if (material.density) *material.density *= 1e12;
   }
   return model;
+}
+
+const ImportedMaterial* MaterialOfBody(const ImportedModel& model) {
+  for (const ImportedMaterial& material : model.materials)
+    if (material.young_modulus) return &material;
+  return model.materials.empty() ? nullptr : &model.materials.front();
 }
 
 std::vector<std::string> WriteImportedExperiment(const ImportedModel& model,

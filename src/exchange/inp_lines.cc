@@ -27,14 +27,6 @@ bool IsControl(char c) {
   return (code < 0x20 && c != '\t') || code == 0x7f;
 }
 
-// In capital letters, without quotes around it.
-std::string Name(std::string_view text) {
-  text = Trimmed(text);
-  if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
-    text = text.substr(1, text.size() - 2);
-  return InCapitals(text);
-}
-
 std::vector<std::string_view> Split(std::string_view text) {
   std::vector<std::string_view> fields;
   for (size_t begin = 0; begin <= text.size();) {
@@ -47,7 +39,10 @@ std::vector<std::string_view> Split(std::string_view text) {
 
 }  // namespace
 
-std::string InCapitals(std::string_view text) {
+std::string InpName(std::string_view text) {
+  text = Trimmed(text);
+  if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
+    text = text.substr(1, text.size() - 2);
   std::string capitals(text);
   std::transform(capitals.begin(), capitals.end(), capitals.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
@@ -79,15 +74,15 @@ void InpLines::ReadKeyword(std::string_view text) {
     continues = text.ends_with(',');
     for (const std::string_view field : Split(is_first ? text.substr(1) : text)) {
       if (is_first) {
-        keyword_ = Name(field);
+        keyword_ = InpName(field);
         is_first = false;
         continue;
       }
       if (field.empty()) continue;
       const size_t equals = field.find('=');
-      const std::string name = Name(field.substr(0, equals));
+      const std::string name = InpName(field.substr(0, equals));
       const std::string value =
-          equals == std::string_view::npos ? "" : Name(field.substr(equals + 1));
+          equals == std::string_view::npos ? "" : InpName(field.substr(equals + 1));
       if (!parameters_.emplace(name, value).second)
         Fail(fmt::format("the parameter {} appears twice", name));
     }

@@ -16,7 +16,9 @@
 
 namespace lacuna {
 
-std::string InCapitals(std::string_view text);
+// A keyword, a parameter or the name of a set as it is compared: in capital letters, without blanks
+// and a pair of double quotes around it.
+std::string InpName(std::string_view text);
 
 class InpLines {
  public:

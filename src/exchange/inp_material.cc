@@ -46,6 +46,11 @@ bool HasMovingGrip(const PortableModel& model) {
                      [](const PortableGrip& grip) { return !grip.displacements.empty(); });
 }
 
+// Why a quasi-static motion is written without damping.
+constexpr const char* kNoRates =
+    "quasi-static steps of the program (*STATIC, *VISCO) have no velocities and therefore no "
+    "damping; in Lacuna the change over a time step is the velocity";
+
 Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel& model,
                               InpDialect dialect) {
   switch (effect.kind) {
@@ -57,8 +62,10 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
               "*DLOAD, GRAV: weights of the elements, consistently distributed, in place of the "
               "weights of lumped masses"};
     case Kind::kMassDamping:
+      if (model.is_static) return {effect.name, How::kNone, kNoRates};
       return {effect.name, How::kExact, "*DAMPING, ALPHA"};
     case Kind::kStiffnessDamping:
+      if (model.is_static) return {effect.name, How::kNone, kNoRates};
       if (!model.IsProportional(effect))
         return {
             effect.name, How::kNone,
@@ -162,7 +169,7 @@ std::string InpMaterial(const PortableModel& model, InpDialect dialect) {
   const bool has_point_masses = dialect == InpDialect::kCalculixPointMasses;
   text += fmt::format("*DENSITY\n{}\n",
                       InpNumber(has_point_masses ? kAlmostNone * model.density : model.density));
-  const RayleighDamping damping = model.Damping();
+  const RayleighDamping damping = model.is_static ? RayleighDamping() : model.Damping();
   if (damping.alpha > 0 || damping.beta > 0)
     text += fmt::format("*DAMPING, ALPHA={}, BETA={}\n", InpNumber(damping.alpha),
                         InpNumber(damping.beta));

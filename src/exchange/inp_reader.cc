@@ -45,6 +45,7 @@ class Reader {
     if (keyword == "ELSET") return ReadSet("ELSET", elements_, &element_sets_, &element_set_order_);
     if (keyword == "MATERIAL") return ReadMaterial();
     if (keyword == "ELASTIC" || keyword == "DENSITY") return ReadProperty(keyword == "ELASTIC");
+    if (keyword == "INSTANCE") return ReadInstance();
     if (keyword == "INCLUDE")
       lines_.Fail("*INCLUDE is not read: put the content of that file in its place");
     if (keyword == "SYSTEM")
@@ -63,6 +64,16 @@ class Reader {
   void NotRead() {
     model_.not_read.push_back(
         fmt::format("line {}: {}", lines_.KeywordLine(), lines_.KeywordText()));
+  }
+
+  // The data lines of an instance move and turn its part.
+  bool ReadInstance() {
+    NotRead();
+    if (NextData())
+      lines_.Fail(
+          "*INSTANCE with a translation or a rotation is not read: give the coordinates of all "
+          "nodes in the assembly's coordinate system");
+    return has_next_;
   }
 
   bool NextData() { return has_next_ = lines_.Next(), has_next_ && !lines_.IsKeyword(); }
@@ -159,7 +170,7 @@ class Reader {
       }
       for (size_t k = 0; k < lines_.Fields().size(); ++k) {
         if (lines_.Fields()[k].empty()) continue;
-        const auto other = sets->find(InCapitals(lines_.Fields()[k]));
+        const auto other = sets->find(InpName(lines_.Fields()[k]));
         if (other != sets->end()) {
           CountEntries(other->second.size());
           if (&other->second != set) set->insert(other->second.begin(), other->second.end());
@@ -238,6 +249,9 @@ class Reader {
     ImportedMaterial& material = model_.materials.back();
     std::optional<double>& value = is_elasticity ? material.young_modulus : material.density;
     if (value) lines_.Fail(fmt::format("the material has a second *{}", keyword));
+    const std::string* moduli = lines_.Parameter("MODULI");
+    if (is_elasticity && moduli != nullptr && *moduli == "INSTANTANEOUS")
+      material.is_instantaneous = true;
     while (NextData()) {
       if (value)
         lines_.Fail(

@@ -22,6 +22,8 @@ namespace lacuna {
 struct ImportedMaterial {
   std::string name;
   std::optional<double> young_modulus, poisson_ratio, density;
+  // Whether the modulus is that of the shortest times (MODULI=INSTANTANEOUS), which relaxes.
+  bool is_instantaneous = false;
 };
 
 struct ImportedModel {
@@ -37,8 +39,8 @@ struct ImportedModel {
 // Throws InputError with file and line for a line that does not follow the format, numbers that are
 // not finite, nodes or sets that do not exist, numbers that appear twice, sets of more than 30
 // million entries in all or with a parameter that is not known, coordinates that are not Cartesian,
-// an elasticity that is not isotropic or depends on temperature, or a mesh that ReadTetMesh would
-// refuse (mesh_io.h).
+// an instance that is moved or turned, an elasticity that is not isotropic or depends on
+// temperature, or a mesh that ReadTetMesh would refuse (mesh_io.h).
 ImportedModel ReadInp(const std::filesystem::path& file);
 
 }  // namespace lacuna

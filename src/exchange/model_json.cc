@@ -54,6 +54,7 @@ Json ParameterJson(const PortableParameter& parameter) {
   else
     json["values"] = parameter.values;
   if (parameter.fitted) json["interval_95"] = {parameter.low, parameter.high};
+  if (parameter.at_limit) json["at_limit"] = *parameter.at_limit;
   json["fitted"] = parameter.fitted;
   return json;
 }

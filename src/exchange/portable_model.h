@@ -71,12 +71,15 @@ struct PortableLoad {
   Eigen::Matrix3Xd force;  // 3 × times: the resultant
 };
 
-// One line for people: "young_modulus", "Pa", 84721.13, and its 95 % interval.
+// A parameter of the fit, for people: "young_modulus", "Pa", 84721.13, and its 95 % interval.
 struct PortableParameter {
   std::string name, unit;
   std::vector<double> values;
   bool fitted = false;
-  double low = 0, high = 0;  // of a fitted parameter
+  double low = 0, high = 0;  // the 95 % interval of a fitted parameter
+  // The value with infinitely fine elements and time steps, whose interval this is; absent where
+  // it was not computed, so that the interval is that of the value itself.
+  std::optional<double> at_limit = {};
 };
 
 // Damping forces α M v + β K v with the tangent stiffness K.

@@ -9,6 +9,7 @@
 #include "calibration/calibration_run.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "diagnosis/diagnosis_run.h"
 #include "plan/planned_experiment.h"
 #include "plan/planner.h"
@@ -73,6 +74,7 @@ PlanRecord RunPlan(const std::filesystem::path& run,
   const Tried tried = ProtocolsFor(fitted, protocols);
   PlanRecord plan =
       MakePlan({fitted, diagnosis->record, diagnosis->decision}, tried.protocols, progress);
+  plan.diagnosis = HashFile(run / "diagnosis" / "diagnosis.json");
   SayWhere(tried, &plan.outcomes);
   const std::filesystem::path folder = PlanFile(run).parent_path();
   MakeFolder(folder);

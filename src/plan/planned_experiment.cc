@@ -16,6 +16,7 @@
 #include "core/quoted_text.h"
 #include "effects/effect_text.h"
 #include "effects/uniform_density.h"
+#include "experiment/listed_regions.h"
 #include "geometry/mesh_io.h"
 #include "plan/planned_recording.h"
 #include "prediction/played_recording.h"
@@ -102,7 +103,8 @@ void WriteProtocol(const FittedRun& fitted, const PredictionStudy& study, const 
 
 // The experiment of the run with the recording that is to be made.
 void WriteJointExperiment(const FittedRun& fitted, const Entry& entry, const fs::path& file) {
-  const std::string name = fmt::format("{}+{}", fitted.study.name, FileNameFor(entry.name));
+  // Not with "+", which stands before an effect that was added to the model.
+  const std::string name = fmt::format("{}-with-{}", fitted.study.name, FileNameFor(entry.name));
   const fs::path output = fs::absolute(fitted.study.output).lexically_normal().parent_path() / name;
   const fs::path from_file =
       output.lexically_proximate(fs::absolute(file.parent_path()).lexically_normal());
@@ -142,6 +144,9 @@ void WritePlannedExperiment(const FittedRun& fitted, double time_step, const Pro
         fmt::format("\"{}\" cannot be played: {}", protocol.name, played.summary.message));
   MakeFolder(folder);
   WriteTetMesh(folder / "object.msh", fitted.mesh);
+  std::vector<Region*> regions = RegionsIn(&planned.item.recording.object);
+  if (planned.item.hold) regions.push_back(&planned.item.hold->region);
+  ListNodesOfMesh(fitted.mesh, regions);
   MarkerRecording recording = AsRecording(planned.item, played, /*noise=*/0, /*seed=*/0);
   recording.reference = folder / "object.msh";
   recording.comment =

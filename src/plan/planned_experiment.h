@@ -4,8 +4,9 @@
 //                             plays it
 //   <folder>/predicted        the recording as the fitted model predicts it: its clamp paths, loads
 //                             and markers
-//   <folder>/experiment.yaml  the experiment of the run with one more recording, <folder>/measured,
-//                             which is still to be made: `lacuna fit` takes it
+//   <folder>/experiment.yaml  the experiment NAME of the run with one more recording,
+//                             <folder>/measured, which is still to be made: `lacuna fit` takes it.
+//                             Its name is NAME-with-PROTOCOL
 //   <folder>/object.msh       the undeformed object, to which the predicted recording refers
 #ifndef LACUNA_PLAN_PLANNED_EXPERIMENT_H_
 #define LACUNA_PLAN_PLANNED_EXPERIMENT_H_

@@ -24,10 +24,6 @@ constexpr int kPosesPerFrame = 10;
 // A clamp may enter a plane of contact by this much, m, as rounding makes it.
 constexpr double kTouching = 1e-6;
 
-std::vector<int> NodesOf(const Region& region, const TetMesh& mesh) {
-  return SelectNodes(region, mesh.nodes);
-}
-
 // The parts that are held, as grips with a motion: a part that is fixed has a path on which it
 // rests, so that it can be turned and shaken like any other.
 std::vector<RecordedGrip> AsGrips(const RecordedObject& object, double first, double last) {
@@ -142,7 +138,7 @@ void AddMarkers(int count, const TetMesh& mesh, const std::vector<RecordedGrip>&
   const BoundarySurface boundary = ExtractBoundary(mesh);
   std::vector<char> held(static_cast<size_t>(mesh.NodeCount()), 0);
   for (const RecordedGrip& grip : grips)
-    for (const int node : NodesOf(grip.region, mesh)) held[static_cast<size_t>(node)] = 1;
+    for (const int node : SelectNodes(grip.region, mesh)) held[static_cast<size_t>(node)] = 1;
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector3d& place : markers->places.colwise()) points.push_back(place);
   const int before = static_cast<int>(points.size());
@@ -203,7 +199,7 @@ std::shared_ptr<const Effect> AttachedWeight(const Protocol::Weight& weight,
     throw InputError(fmt::format("weight: its place is {:.3g} mm away from the object",
                                  1e3 * box.exteriorDistance(weight.place)));
   for (const ModelParameter& parameter : study.fitted)
-    if (&study.effects[parameter.places.front().effect]->Card() == &GravityCard())
+    if (IsGravity(EffectOf(parameter, study.effects)))
       throw InputError(
           fmt::format("weight: that of a mass in one recording does not follow {}, "
                       "which is fitted",
@@ -221,7 +217,7 @@ void RequireClampAbovePlanes(const std::vector<RecordedGrip>& grips, const Predi
     const Eigen::Vector3d normal = plane->normal.normalized();
     for (const RecordedGrip& grip : grips) {
       if (grip.motion != GripMotion::kGiven) continue;
-      const Eigen::Matrix3Xd rest = mesh.nodes(Eigen::all, NodesOf(grip.region, mesh));
+      const Eigen::Matrix3Xd rest = mesh.nodes(Eigen::all, SelectNodes(grip.region, mesh));
       for (const double time : times) {
         const double lowest =
             (normal.transpose() * (MotionAt(grip, time) * rest)).minCoeff() - plane->offset;
@@ -275,7 +271,7 @@ PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& 
             "be turned nor shaken",
             protocol.turn.isZero(0) ? "shake" : "turn", grip.region.name, grip.axes.Names()));
     const Eigen::Vector3d middle =
-        mesh.nodes(Eigen::all, NodesOf(grips.front().region, mesh)).rowwise().mean();
+        mesh.nodes(Eigen::all, SelectNodes(grips.front().region, mesh)).rowwise().mean();
     fixture.turn.translate(middle);
     fixture.turn.rotate(RotationBy(protocol.turn));
     fixture.turn.translate(-middle);
@@ -343,7 +339,7 @@ ProtocolPicture PictureOf(const PlannedRecording& planned, const TetMesh& mesh,
   for (const RecordedGrip& grip : object.grips) {
     if (grip.motion != GripMotion::kGiven) continue;
     const Eigen::Vector3d middle =
-        mesh.nodes(Eigen::all, NodesOf(grip.region, mesh)).rowwise().mean();
+        mesh.nodes(Eigen::all, SelectNodes(grip.region, mesh)).rowwise().mean();
     turn.col(0).setZero();
     for (Eigen::Index k = 0; k < kPoints; ++k) {
       const Eigen::Isometry3d motion = MotionAt(grip, times[k]);

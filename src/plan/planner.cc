@@ -21,6 +21,7 @@
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/projected_hypotheses.h"
+#include "diagnosis/recording_power.h"
 #include "fit/calibration.h"
 #include "plan/joined_space.h"
 #include "plan/planned_recording.h"
@@ -248,6 +249,28 @@ PlannedOutcome Planner::Play(const Protocol& protocol) const {
   return outcome;
 }
 
+// How often recordings like those of the run lead to the name of each rival: from the diagnosis,
+// which has simulated that for the most probable effects, and simulated here for the others. A
+// rival that the residual does not show keeps 0: at the size 0 nothing leads to its name.
+void SetNamedNow(const DiagnosedRun& run, std::vector<PlannedRival>* rivals) {
+  const auto find = [](const std::vector<RecordedPower>& all, const std::string& effect) {
+    return std::find_if(all.begin(), all.end(), [&](const RecordedPower& power) {
+      return power.truth == std::vector<std::string>{effect};
+    });
+  };
+  std::vector<RecordedPower> known = run.diagnosis.decision.power;
+  std::vector<std::string> missing;
+  for (const PlannedRival& rival : *rivals)
+    if (find(known, rival.effect) == known.end()) missing.push_back(rival.effect);
+  if (!missing.empty()) {
+    const std::vector<RecordedPower> simulated = SimulatePower(run.decision, missing);
+    known.insert(known.end(), simulated.begin(), simulated.end());
+  }
+  for (PlannedRival& rival : *rivals)
+    if (const auto power = find(known, rival.effect); power != known.end())
+      rival.named_now = power->named;
+}
+
 }  // namespace
 
 std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis) {
@@ -265,10 +288,7 @@ std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis) {
   }
   std::vector<PlannedRival> rivals;
   for (const std::string& name : order) {
-    PlannedRival rival{name, ShortTitle(diagnosis, name), probability[name], 0};
-    for (const RecordedPower& power : diagnosis.decision.power)
-      if (power.truth == std::vector<std::string>{name}) rival.named_now = power.named;
-    rivals.push_back(std::move(rival));
+    rivals.push_back({name, ShortTitle(diagnosis, name), probability[name]});
   }
   return rivals;
 }
@@ -304,6 +324,7 @@ PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protoc
         fmt::format("the influence of {} on another recording cannot be predicted to "
                     "first order",
                     fmt::join(record.not_predicted, ", ")));
+  SetNamedNow(run, &record.rivals);
   double sum = 0;
   for (const PlannedRival& rival : record.rivals) sum += rival.probability;
   for (PlannedRival& rival : record.rivals)

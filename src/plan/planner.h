@@ -33,7 +33,7 @@ struct DiagnosedRun {
 };
 
 // The effects among the hypotheses that the diagnosis must keep to reach kStatedProbability, alone
-// or in pairs, the most probable one first.
+// or in pairs, the most probable one first. Their PlannedRival::named_now is not set.
 std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis);
 
 // The outcomes are sorted. A protocol that cannot be played is reported in its message. Throws

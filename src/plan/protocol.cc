@@ -20,7 +20,8 @@ namespace {
 // Of the stock variants: a share of the object's size and of its mass, large enough to be seen and
 // small enough to leave the experiment what it is.
 constexpr double kShakeShare = 0.03, kWeightShare = 0.1, kWeightRadius = 0.03;
-// Periods of a stock variant's shaking in one recording.
+// Periods of a stock variant's shaking in one recording; fewer where its frames or the time step
+// cannot resolve as many.
 constexpr double kShakePeriods = 4;
 
 bool HoldsSomething(const RecordedObject& object) {
@@ -42,7 +43,7 @@ Eigen::Vector3d FarthestMarker(const PredictedRecording& item, const TetMesh& me
   if (HoldsSomething(object)) {
     const Region& held =
         object.fixed.empty() ? object.grips.front().region : object.fixed.front().region;
-    from = mesh.nodes(Eigen::all, SelectNodes(held, mesh.nodes)).rowwise().mean();
+    from = mesh.nodes(Eigen::all, SelectNodes(held, mesh)).rowwise().mean();
   }
   const Eigen::Matrix3Xd& places = item.recording.markers.places;
   Eigen::Index farthest = 0;
@@ -80,6 +81,17 @@ std::string DescribeProtocol(const Protocol& protocol) {
     changes.push_back(fmt::format("recorded for {:g} times as long", protocol.duration));
   if (changes.empty()) return fmt::format("\"{}\" once more", protocol.recording);
   return fmt::format("\"{}\" with {}", protocol.recording, fmt::join(changes, ", "));
+}
+
+double HighestShakeFrequency(const PredictedRecording& item, double time_step) {
+  const std::vector<double>& times = item.recording.times;
+  double highest = 1 / (kStepsPerPeriod * time_step);
+  if (item.frames.size() > 1) {
+    const double intervals = static_cast<double>(item.frames.size() - 1);
+    const double duration = times[item.frames.back()] - times[item.frames.front()];
+    highest = std::min(highest, intervals / (kFramesPerPeriod * duration));
+  }
+  return highest;
 }
 
 const PredictedRecording& PlannableRecording(const PredictionStudy& study) {
@@ -123,11 +135,14 @@ std::vector<Protocol> StockProtocols(const PredictionStudy& study, const TetMesh
     }
     const double duration = times[item.frames.back()] - item.StartTime();
     const double size = BoundingBoxDiagonal(mesh.nodes);
+    const double frequency =
+        std::min(kShakePeriods / duration, HighestShakeFrequency(item, study.time_step));
     for (int axis = 0; moves && duration > 0 && axis < 3; ++axis)
-      add(fmt::format("shake along {}", "xyz"[axis])).shake = Protocol::Shake{
-          kShakeShare * size * Eigen::Vector3d::Unit(axis), kShakePeriods / duration};
+      add(fmt::format("shake along {}", "xyz"[axis])).shake =
+          Protocol::Shake{kShakeShare * size * Eigen::Vector3d::Unit(axis), frequency};
   }
-  const double mass = DensityWith(study.effects, study.density) * TetVolumes(mesh).sum();
+  const double mass = DensityWith(study.effects, study.density) *
+                      (TetVolumes(mesh).sum() + VolumeOfCurvature(mesh));
   add("added mass").weight = Protocol::Weight{kWeightShare * mass, FarthestMarker(item, mesh),
                                               kWeightRadius * BoundingBoxDiagonal(mesh.nodes)};
   add("more markers").more_markers = static_cast<int>(item.recording.markers.names.size());

@@ -39,6 +39,13 @@ struct Protocol {
   int more_markers = 0;  // further markers, evenly over the free surface
 };
 
+// The highest frequency, 1/s, at which a clamp may be shaken in variants of a recording that are
+// simulated with the time step `time_step`, s. A period of the motion needs at least
+// kStepsPerPeriod steps, fewer of which would not follow its path, and kFramesPerPeriod frames,
+// fewer of which would show a slower motion (the sampling theorem).
+inline constexpr double kStepsPerPeriod = 6, kFramesPerPeriod = 2;
+double HighestShakeFrequency(const PredictedRecording& item, double time_step);
+
 // What is done, in words: "released from 2 times the pull, clamp turned by 90° about y".
 std::string DescribeProtocol(const Protocol& protocol);
 

@@ -15,8 +15,8 @@ namespace {
 constexpr double kLargestFactor = 100;
 constexpr int kMostMarkers = 1000;
 
-std::string ReadBase(const Config& item, const PredictionStudy& study) {
-  if (!item.Has("recording")) return PlannableRecording(study).name;
+const PredictedRecording& ReadBase(const Config& item, const PredictionStudy& study) {
+  if (!item.Has("recording")) return PlannableRecording(study);
   const std::string name = item.Text("recording");
   std::vector<std::string> known;
   for (const PredictedRecording& recording : study.recordings) {
@@ -25,7 +25,7 @@ std::string ReadBase(const Config& item, const PredictionStudy& study) {
     } else if (recording.scans != nullptr) {
       item.Fail("recording", "shows scans; only recordings of markers can be planned yet");
     } else {
-      return name;
+      return recording;
     }
   }
   item.Fail("recording",
@@ -39,18 +39,32 @@ Eigen::Vector3d ReadTurn(const Config& turn) {
   return turn.Quantity("angle", kAngle, {-kHalf, kHalf, false, false}) * axis.normalized();
 }
 
+Protocol::Shake ReadShake(const Config& shake, const PredictedRecording& base, double time_step) {
+  Protocol::Shake read;
+  read.amplitude = shake.Vector("amplitude", kLength);
+  if (read.amplitude.norm() == 0) shake.Fail("amplitude", "expected a displacement other than 0");
+  read.frequency = shake.Quantity("frequency", kRate, kPositive);
+  const double highest = HighestShakeFrequency(base, time_step);
+  if (read.frequency > highest)
+    shake.Fail("frequency",
+               fmt::format("at most {:.3g} Hz can be resolved: a period needs at least {:g} time "
+                           "steps, of {:.3g} ms here, and {:g} frames of \"{}\"",
+                           highest, kStepsPerPeriod, 1e3 * time_step, kFramesPerPeriod, base.name));
+  return read;
+}
+
 Protocol ReadProtocol(const Config& item, const PredictionStudy& study) {
   const Bounds factor{0, kLargestFactor, true, false};
   Protocol protocol;
   protocol.name = item.Text("name");
   if (protocol.name.empty()) item.Fail("name", "is empty");
-  protocol.recording = ReadBase(item, study);
+  const PredictedRecording& base = ReadBase(item, study);
+  protocol.recording = base.name;
   protocol.duration = item.Number("duration", factor, protocol.duration);
   protocol.pull = item.Number("pull", factor, protocol.pull);
   if (const auto turn = item.OptionalChild("turn")) protocol.turn = ReadTurn(*turn);
   if (const auto shake = item.OptionalChild("shake"))
-    protocol.shake = Protocol::Shake{shake->Vector("amplitude", kLength),
-                                     shake->Quantity("frequency", kRate, kPositive)};
+    protocol.shake = ReadShake(*shake, base, study.time_step);
   if (const auto weight = item.OptionalChild("weight"))
     protocol.weight = Protocol::Weight{weight->Quantity("mass", kMass, kPositive),
                                        weight->Vector("place", kLength),

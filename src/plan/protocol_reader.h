@@ -28,7 +28,8 @@ struct ProtocolFile {
 };
 
 // Throws InputError with file, line, column and field: for unknown keys, wrong units, a recording
-// that the study does not have or that cannot be planned, and names that occur twice.
+// that the study does not have or that cannot be planned, a shaking that the frames or the study's
+// time step cannot resolve (HighestShakeFrequency), and names that occur twice.
 ProtocolFile ReadProtocols(const Config& config, const PredictionStudy& study);
 
 }  // namespace lacuna

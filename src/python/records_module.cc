@@ -66,6 +66,9 @@ void DefineParameters(py::module_* module) {
       .def_readonly("name", &FittedParameter::name)
       .def_readonly("unit", &FittedParameter::unit)
       .def_property_readonly("value", [](const FittedParameter& p) { return p.estimate.value; })
+      .def_readonly("at_limit", &FittedParameter::at_limit,
+                    "the value with infinitely fine elements and time steps, whose interval `low` "
+                    "to `high` is; None: it was not computed, and the interval is that of `value`")
       .def_property_readonly(
           "low", [](const FittedParameter& p) { return p.estimate.low; },
           "lower end of the 95 % interval")
@@ -76,7 +79,8 @@ void DefineParameters(py::module_* module) {
           "verdict", [](const FittedParameter& p) { return VerdictName(p.estimate.verdict); },
           "whether the recordings determine it: \"pinned down\", \"traded off\", ...")
       .def("__repr__", [](const FittedParameter& p) {
-        return fmt::format("<{} = {:.4g} ({:.4g} to {:.4g}) {}>", p.name, p.estimate.value,
+        const std::string limit = p.at_limit ? fmt::format("at_limit {:.4g}: ", *p.at_limit) : "";
+        return fmt::format("<{} = {:.4g} ({}{:.4g} to {:.4g}) {}>", p.name, p.estimate.value, limit,
                            p.estimate.low, p.estimate.high, p.unit);
       });
 }
@@ -162,7 +166,15 @@ void DefineModel(py::module_* module) {
       .def_property_readonly(
           "values",
           [estimate](const ReportedModel& m) { return estimate(m, &ParameterEstimate::value); },
-          "the values of the parameters, SI")
+          "the values of the parameters with the elements and time steps of the fit, SI")
+      .def_property_readonly(
+          "at_limit",
+          [](const ReportedModel& m) {
+            return Column(m.calibration.parameters, [](const FittedParameter& p) {
+              return p.at_limit.value_or(kNotMeasured);
+            });
+          },
+          "the values with infinitely fine elements and time steps, SI; NaN: not computed")
       .def_property_readonly(
           "intervals",
           [](const ReportedModel& m) {
@@ -175,7 +187,7 @@ void DefineModel(py::module_* module) {
             }
             return ends;
           },
-          "(parameters, 2): the 95 % intervals, SI")
+          "(parameters, 2): the 95 % intervals, SI, of `at_limit`, or of `values` where it is NaN")
       .def_property_readonly("recordings",
                              [](const ReportedModel& m) { return m.calibration.recordings; })
       .def_readonly("diagnosis", &ReportedModel::diagnosis, "None: there is none of this fit")

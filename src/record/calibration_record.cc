@@ -187,6 +187,12 @@ std::optional<NearBound> FindNearBound(const ParameterEstimate& estimate, bool l
   return std::nullopt;
 }
 
+bool HasPlannableRecording(const CalibrationRecord& record) {
+  return std::any_of(
+      record.recordings.begin(), record.recordings.end(),
+      [](const FittedRecording& recording) { return recording.fitted && !recording.scan; });
+}
+
 json EstimateToJson(const ParameterEstimate& estimate) {
   return {{"value", estimate.value},
           {"low_95", NumberOrNull(estimate.low)},

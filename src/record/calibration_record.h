@@ -109,6 +109,10 @@ struct CalibrationRecord {
   std::vector<std::string> mesh_notes;
 };
 
+// Whether some fitted recording shows markers or tracked points. `lacuna plan` makes variants of
+// such recordings, and not of scans.
+bool HasPlannableRecording(const CalibrationRecord& record);
+
 // The name in files and reports, e.g. "traded off".
 std::string VerdictName(ParameterEstimate::Verdict verdict);
 

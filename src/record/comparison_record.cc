@@ -168,7 +168,8 @@ json NoiseFloorToJson(const NoiseFloor& noise_floor) {
     rests.push_back({{"from_s", rest.from},
                      {"to_s", rest.to},
                      {"deviation_m", NumberOrNull(rest.deviation)},
-                     {"drift_m_per_s", NumberOrNull(rest.drift)}});
+                     {"drift_m_per_s", NumberOrNull(rest.drift)},
+                     {"noise_drift_m_per_s", NumberOrNull(rest.noise_drift)}});
   return {{"floor_m", NumberOrNull(noise_floor.floor)},
           {"white_noise_m", NumberOrNull(noise_floor.white)},
           {"rest_deviation_m", NumberOrNull(noise_floor.rest_deviation)},
@@ -180,9 +181,9 @@ NoiseFloor NoiseFloorFromJson(const json& object) {
                          NumberOr(object.at("rest_deviation_m")),
                          {}};
   for (const json& rest : object.at("rests"))
-    noise_floor.rests.push_back({rest.at("from_s"), rest.at("to_s"),
-                                 NumberOr(rest.at("deviation_m")),
-                                 NumberOr(rest.at("drift_m_per_s"))});
+    noise_floor.rests.push_back(
+        {rest.at("from_s"), rest.at("to_s"), NumberOr(rest.at("deviation_m")),
+         NumberOr(rest.at("drift_m_per_s")), NumberOr(rest.value("noise_drift_m_per_s", json()))});
   return noise_floor;
 }
 

@@ -111,9 +111,10 @@ struct ComparedPart {
 
 // A period in which the object rests, and how its markers scatter there about a straight line.
 struct RestPeriod {
-  double from = 0, to = 0;          // s
-  double deviation = kNotMeasured;  // m, scatter of a coordinate about the line
-  double drift = kNotMeasured;      // m/s, rms slope of the line
+  double from = 0, to = 0;            // s
+  double deviation = kNotMeasured;    // m, scatter of a coordinate about the line
+  double drift = kNotMeasured;        // m/s, rms slope of the line
+  double noise_drift = kNotMeasured;  // m/s, the rms slope that uncorrelated noise alone gives
 };
 
 // The noise of a recording, estimated from the recording itself without a model. Values are

@@ -7,6 +7,8 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/hash.h"
+#include "core/json_file.h"
 #include "core/json_number.h"
 #include "record/schema_version.h"
 
@@ -238,6 +240,15 @@ std::optional<std::string> PartlyExplainedBy(const DiagnosisRecord& diagnosis) {
     if (one.Contains(remains->effect)) probability += one.probability;
   if (probability < kStatedProbability) return std::nullopt;
   return remains->effect;
+}
+
+bool IsDiagnosisOf(const std::string& fit, const std::filesystem::path& folder) {
+  const std::filesystem::path origin = folder / "of_fit.json", file = folder / "diagnosis.json";
+  if (!std::filesystem::exists(origin) || !std::filesystem::exists(file)) return false;
+  return ReadJsonFile(origin, [&](const json& value) {
+    return value.value("diagnosis", "") == HashFile(file) &&
+           value.value("of", json::object()).value("fit", "") == fit;
+  });
 }
 
 void WriteDiagnosisFile(const DiagnosisRecord& record, const std::filesystem::path& file) {

@@ -128,6 +128,11 @@ struct DiagnosisRecord : Conclusion {
 // there is no such effect.
 std::optional<std::string> PartlyExplainedBy(const DiagnosisRecord& diagnosis);
 
+// Whether the diagnosis in this folder, <run>/diagnosis, belongs to the fit whose calibration.json
+// has this hash and was not changed since: of_fit.json beside diagnosis.json says both. False where
+// one of them is absent. Throws InputError when of_fit.json cannot be read.
+bool IsDiagnosisOf(const std::string& fit, const std::filesystem::path& folder);
+
 void WriteDiagnosisFile(const DiagnosisRecord& record, const std::filesystem::path& file);
 
 // Throws InputError when the file is not a diagnosis, or one in another format.

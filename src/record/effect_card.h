@@ -175,6 +175,13 @@ inline std::vector<int> SizeParameters(const EffectCard& card) {
   return {0};
 }
 
+// Whether the effect may hold an object without grips in place: supports, contacts, and laws of the
+// user, of which it is not known.
+inline bool MayHold(const EffectCard& card) {
+  return std::holds_alternative<TriedAsSupports>(card.tried_at) ||
+         card.family == EffectFamily::kContact || card.family == EffectFamily::kOther;
+}
+
 // Whether the diagnosis tries the effect by a simulation of its own (pilot) and not by a
 // derivative.
 inline bool IsContact(const EffectCard& card) {

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/atomic_file.h"
+#include "core/json_file.h"
 #include "core/json_number.h"
 
 namespace lacuna {
@@ -14,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;
 // Recordings whose probabilities of a right name differ by less count as equally good.
 constexpr double kNoticeable = 0.05;
 
@@ -81,6 +82,11 @@ void SortOutcomes(std::vector<PlannedOutcome>* outcomes) {
       [&](const PlannedOutcome& a, const PlannedOutcome& b) { return key(a) < key(b); });
 }
 
+bool IsPlanOf(const std::string& diagnosis, const std::filesystem::path& file) {
+  const json plan = ReadJsonFile(file);
+  return plan.is_object() && plan.value("diagnosis", json()) == diagnosis;
+}
+
 void WritePlanFile(const PlanRecord& record, const std::filesystem::path& file) {
   json rivals = json::array(), outcomes = json::array();
   for (const PlannedRival& rival : record.rivals)
@@ -91,6 +97,7 @@ void WritePlanFile(const PlanRecord& record, const std::filesystem::path& file) 
   for (const PlannedOutcome& outcome : record.outcomes)
     outcomes.push_back(OutcomeToJson(outcome, record.rivals));
   const json all = {{"schema_version", kSchemaVersion},
+                    {"diagnosis", record.diagnosis},
                     {"run", record.run},
                     {"verdict", record.verdict},
                     {"rivals", rivals},

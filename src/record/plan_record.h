@@ -68,6 +68,7 @@ struct PlannedOutcome {
 };
 
 struct PlanRecord {
+  std::string diagnosis;               // hash of the diagnosis.json that the plan starts from
   std::string run;                     // the name of the experiment
   std::string verdict;                 // of the diagnosis, with its names
   std::vector<PlannedRival> rivals;    // the most probable one first
@@ -84,6 +85,10 @@ struct PlanRecord {
 // better; where that is the same, by the shorter recording, then by the larger least λ, then by the
 // order given. What cannot be played comes last.
 void SortOutcomes(std::vector<PlannedOutcome>* outcomes);
+
+// Whether a plan was made from the diagnosis whose diagnosis.json has this hash. False for a file
+// that is no plan. Throws InputError when it cannot be read or is not JSON.
+bool IsPlanOf(const std::string& diagnosis, const std::filesystem::path& file);
 
 // Throws InputError when the file cannot be written.
 void WritePlanFile(const PlanRecord& record, const std::filesystem::path& file);

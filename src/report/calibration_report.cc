@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/quantity.h"
 #include "core/text_layout.h"
 #include "report/reaction_text.h"
 
@@ -122,10 +123,8 @@ std::string TimeStepText(const CalibrationRecord& record) {
     return recording.in_fit.frames + recording.held_out.frames > 1;
   };
   if (std::none_of(record.recordings.begin(), record.recordings.end(), moves)) return "";
-  const bool in_seconds = record.time_step >= 1;
   return fmt::format(
-      "  time step {:.3g} {}{}\n", (in_seconds ? 1 : 1e3) * record.time_step,
-      in_seconds ? "s" : "ms",
+      "  time step {}{}\n", DurationText(record.time_step),
       record.step_error > 0
           ? fmt::format("; halving it would change the prediction by {:.2g} σ", record.step_error)
           : "");

@@ -19,6 +19,9 @@ constexpr double kSignificant = 0.01;  // p-values below this are significant
 constexpr double kClearCorrelation = 0.2;  // correlation of neighbouring frames
 constexpr double kSameDirection = 0.5;     // agreement of the errors' directions, 0 to 1
 constexpr double kFarFromFloor = 2;        // ratio of the assumed noise to the measured one
+// The object drifts while it rests where the slope is this many times that which noise alone gives:
+// below, a few frames at rest would show a drift; above, slow drift of long rests goes unmentioned.
+constexpr double kClearDrift = 3;
 // An error at the measured places is reported where it is so many times that at the fitted places.
 constexpr double kHiddenByPlaces = 1.1;
 
@@ -133,13 +136,13 @@ std::string DescribeNoise(const ComparedRecording& recording) {
     text += " The object never rests long enough to show slower noise.";
   } else {
     double drift = 0;
-    for (const RestPeriod& rest : noise_floor.rests) drift = std::fmax(drift, rest.drift);
+    for (const RestPeriod& rest : noise_floor.rests)
+      if (rest.drift > kClearDrift * rest.noise_drift) drift = std::fmax(drift, rest.drift);
     text += fmt::format(
-        " While the object rests ({} {}), coordinates scatter by {} about a straight line and "
-        "drift "
-        "by up to {} per second.",
+        " While the object rests ({} {}), coordinates scatter by {} about a straight line",
         noise_floor.rests.size(), noise_floor.rests.size() == 1 ? "period" : "periods",
-        Millimetres(noise_floor.rest_deviation), Millimetres(drift));
+        Millimetres(noise_floor.rest_deviation));
+    text += drift > 0 ? fmt::format(" and drift by up to {} per second.", Millimetres(drift)) : ".";
   }
   const double ratio = recording.noise / noise_floor.floor;
   if (ratio > kFarFromFloor || ratio < 1 / kFarFromFloor) {

@@ -259,7 +259,8 @@ std::string DetectableTable(const DiagnosisRecord& diagnosis) {
   return text;
 }
 
-std::string WhatNext(const DiagnosisRecord& diagnosis, const std::filesystem::path& run) {
+std::string WhatNext(const DiagnosisRecord& diagnosis, const CalibrationRecord& fit,
+                     const std::filesystem::path& run) {
   if (diagnosis.verdict == Verdict::kMissing)
     return fmt::format(
         "lacuna add {0} {1}, or lacuna diagnose {0} --until-done; lacuna explain {1}", run.string(),
@@ -271,7 +272,7 @@ std::string WhatNext(const DiagnosisRecord& diagnosis, const std::filesystem::pa
         run.string(), *part);
   if (!diagnosis.next_steps.empty()) {
     const std::string steps = DescribeNextSteps(diagnosis);
-    return diagnosis.verdict == Verdict::kAmbiguous
+    return diagnosis.verdict == Verdict::kAmbiguous && HasPlannableRecording(fit)
                ? fmt::format("{}; lacuna plan {} computes which recording would decide", steps,
                              run.string())
                : steps;
@@ -286,7 +287,8 @@ std::string WhatNext(const DiagnosisRecord& diagnosis, const std::filesystem::pa
 
 }  // namespace
 
-std::string DiagnosisReport(const DiagnosisRecord& diagnosis, const std::filesystem::path& run) {
+std::string DiagnosisReport(const DiagnosisRecord& diagnosis, const CalibrationRecord& fit,
+                            const std::filesystem::path& run) {
   std::string text = "\n" + VerdictWithNames(diagnosis) + "\n";
   text += Paragraph(ExplainVerdict(diagnosis));
   text += NoiseParagraph(diagnosis);
@@ -297,7 +299,7 @@ std::string DiagnosisReport(const DiagnosisRecord& diagnosis, const std::filesys
   text += AgreementLines(diagnosis.agreement);
   if (diagnosis.verdict == Verdict::kAdequate || diagnosis.verdict == Verdict::kNoPower)
     text += DetectableTable(diagnosis);
-  const std::string next = WhatNext(diagnosis, run);
+  const std::string next = WhatNext(diagnosis, fit, run);
   if (!next.empty()) text += "\n" + Paragraph(next, "next: ");
   return text + fmt::format("\n{} contains all results\n",
                             (run / "diagnosis" / "diagnosis.json").string());

@@ -135,14 +135,16 @@ std::string MissingSentence(const ReportedModel& model) {
                      details.empty() ? "" : fmt::format(" ({})", fmt::join(details, "; ")));
 }
 
-std::string AmbiguousSentence(const DiagnosisRecord& diagnosis) {
+std::string AmbiguousSentence(const ReportedModel& model) {
+  const DiagnosisRecord& diagnosis = *model.diagnosis;
   std::vector<std::string> titles;
   for (const std::string& name : diagnosis.effects)
     titles.push_back(WithProbability(diagnosis, name));
   return fmt::format(
-      "Something is missing, but these recordings cannot tell which of these: {}.{} `lacuna plan` "
-      "computes which recording would.",
-      fmt::join(titles, ", or "), NextStep(diagnosis));
+      "Something is missing, but these recordings cannot tell which of these: {}.{}{}",
+      fmt::join(titles, ", or "), NextStep(diagnosis),
+      HasPlannableRecording(model.calibration) ? " `lacuna plan` computes which recording would."
+                                               : "");
 }
 
 std::string NuisanceSentence(const ReportedModel& model) {
@@ -210,7 +212,7 @@ std::string VerdictSentence(const ReportedModel& model) {
     case Verdict::kMissing:
       return MissingSentence(model);
     case Verdict::kAmbiguous:
-      return AmbiguousSentence(diagnosis);
+      return AmbiguousSentence(model);
     case Verdict::kNuisance:
       return NuisanceSentence(model);
     case Verdict::kNotInLibrary:
@@ -270,11 +272,18 @@ std::string AfterAdding(const ReportedModel& model, const ReportedModel& before)
                      Lengths(model.errors));
 }
 
-std::string NamedInVain(const ReportedModel& before, const ReportedModel& after) {
-  return fmt::format(
-      "A further diagnosis names {}, but once it is fitted, its size may be zero, so that it does "
-      "not count.",
-      WithProbability(*before.diagnosis, after.added));
+// Whether a diagnosis names this effect, and no other, as what is missing.
+bool Names(const DiagnosisRecord& diagnosis, const std::string& effect) {
+  return diagnosis.verdict == Verdict::kMissing &&
+         diagnosis.effects == std::vector<std::string>{effect};
+}
+
+// The verdict on the model and, where nothing more is missing in the fitted recordings, which
+// others it does not meet.
+void AddVerdict(const ReportedModel& model, std::vector<std::string>* sentences) {
+  if (!model.calibration.usable) return;
+  for (std::string sentence : {VerdictSentence(model), NotMetElsewhere(model)})
+    if (!sentence.empty()) sentences->push_back(std::move(sentence));
 }
 
 }  // namespace
@@ -287,19 +296,30 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
   std::vector<std::string> sentences{FirstErrorSentence(first)};
   for (size_t k = 0; k < models.size(); ++k) {
     if (k > 0) sentences.push_back(AfterAdding(models[k], models[k - 1]));
-    const std::string verdict = models[k].calibration.usable ? VerdictSentence(models[k]) : "";
-    if (k + 1 < models.size() && models[k].diagnosis &&
-        SizeMayBeZero(models[k + 1].calibration, *models[k].diagnosis, models[k + 1].added)) {
-      sentences.push_back(NamedInVain(models[k], models[k + 1]));
+    if (k + 1 == models.size()) {
+      AddVerdict(models[k], &sentences);
       break;
     }
-    // What was added shows by itself that the model before lacked it.
-    const bool is_last = k + 1 == models.size();
-    if (verdict.empty() || !(is_last || models[k].diagnosis)) continue;
-    sentences.push_back(verdict);
-    if (!is_last) continue;
-    if (std::string others = NotMetElsewhere(models[k]); !others.empty())
-      sentences.push_back(std::move(others));
+    // Without a diagnosis, what was added shows by itself that the model before lacked it.
+    if (!models[k].diagnosis) continue;
+    const DiagnosisRecord& diagnosis = *models[k].diagnosis;
+    const std::string& added = models[k + 1].added;
+    if (!SizeMayBeZero(models[k + 1].calibration, diagnosis, added)) {
+      if (models[k].calibration.usable) sentences.push_back(VerdictSentence(models[k]));
+      continue;
+    }
+    if (Names(diagnosis, added)) {
+      sentences.push_back(fmt::format(
+          "{} diagnosis names {}, but once it is fitted, its size may be zero, so that it does not "
+          "count.",
+          k > 0 ? "A further" : "The", WithProbability(diagnosis, added)));
+    } else {
+      AddVerdict(models[k], &sentences);
+      sentences.push_back(fmt::format(
+          "A model with {} was fitted, too, but its size may be zero, so that it does not count.",
+          ShortTitle(diagnosis, added)));
+    }
+    break;
   }
   const auto last = std::find_if(models.rbegin(), models.rend(), [](const ReportedModel& model) {
     return model.diagnosis.has_value();

@@ -131,7 +131,7 @@ json ModelDocument(const std::vector<ReportedModel>& models, size_t index) {
           {"comparison",
            WithoutPairs(file(model.comparison.has_value(), "comparison/comparison.json"))},
           {"diagnosis", file(model.diagnosis.has_value(), "diagnosis/diagnosis.json")},
-          {"plan", file(fs::exists(model.folder / "plan/plan.json"), "plan/plan.json")},
+          {"plan", file(model.has_plan, "plan/plan.json")},
           {"scenes", SceneDocuments(model)}};
 }
 
@@ -145,22 +145,22 @@ json NoiseOf(const CalibrationRecord& record) {
 
 GatheredRun GatherFit(const fs::path& folder) {
   const ReportedRun run = OpenReportedRun(folder);
-  const ReportedModel& first = run.models.front();
-  const Manifest manifest = LoadManifest(first.folder / "manifest.json");
+  const ReportedModel& opened = run.Opened();
+  const Manifest manifest = LoadManifest(opened.folder / "manifest.json");
   json models = json::array();
   for (size_t k = 0; k < run.models.size(); ++k) models.push_back(ModelDocument(run.models, k));
   GatheredRun gathered;
   gathered.sentences = Headline(run.models);
-  gathered.comparable = {first.name, manifest, {}};
-  for (const FittedRecording& recording : first.calibration.recordings)
+  gathered.comparable = {opened.name, manifest, {}};
+  for (const FittedRecording& recording : opened.calibration.recordings)
     gathered.comparable.spans.push_back({recording.name, recording.scan ? "scans" : "markers",
                                          recording.in_fit.frames, recording.held_out.frames});
-  gathered.document = {{"name", run.ledger.is_null() ? run.models.back().name : first.name},
+  gathered.document = {{"name", opened.name},
                        {"folder", FromProject(folder, folder)},
                        {"kind", "prediction"},
                        {"models", models},
                        {"ledger", run.ledger},
-                       {"noise", NoiseOf(first.calibration)},
+                       {"noise", NoiseOf(opened.calibration)},
                        {"reconstruction", nullptr},
                        {"table1", nullptr},
                        {"trials", nullptr},

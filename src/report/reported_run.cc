@@ -9,6 +9,7 @@
 #include "core/hash.h"
 #include "core/json_file.h"
 #include "record/ledger.h"
+#include "record/plan_record.h"
 #include "record/run_directory.h"
 
 namespace lacuna {
@@ -19,15 +20,6 @@ using nlohmann::json;
 
 std::string NameOf(const fs::path& folder) {
   return fs::absolute(folder / ".").lexically_normal().parent_path().filename().string();
-}
-
-// Whether diagnosis.json is of this fit and was not changed since; of_fit.json says both.
-bool IsDiagnosisOf(const std::string& fit, const fs::path& folder) {
-  const fs::path origin = folder / "of_fit.json";
-  if (!fs::exists(origin)) return false;
-  const json value = ReadJsonFile(origin);
-  return value.value("diagnosis", "") == HashFile(folder / "diagnosis.json") &&
-         value.value("of", json::object()).value("fit", "") == fit;
 }
 
 fs::path CalibrationFile(const fs::path& folder) {
@@ -50,24 +42,29 @@ ReportedModel OpenModel(const fs::path& folder, const std::string& added,
   if (model.calibration.usable) model.errors = ErrorsOf(model.calibration);
   for (const std::string& note : model.calibration.notes)
     notes->push_back(fmt::format("The fit of {}: {}.", model.name, note));
-  const auto leave_out = [&](const char* what, const char* command) {
+  const auto leave_out = [&](const char* what, const char* earlier, const char* command) {
     notes->push_back(fmt::format(
-        "The {} in the folder of {} is of an earlier fit and is not shown; `lacuna {}` makes a new "
+        "The {} in the folder of {} is of an earlier {} and is not shown; `lacuna {}` makes a new "
         "one.",
-        what, model.name, command));
+        what, model.name, earlier, command));
   };
   if (const fs::path file = folder / "comparison/comparison.json"; fs::exists(file)) {
     if (IsComparisonOf(model.fit, file))
       model.comparison = ReadComparisonFile(file);
     else
-      leave_out("comparison", "compare");
+      leave_out("comparison", "fit", "compare");
   }
   if (const fs::path file = folder / "diagnosis/diagnosis.json"; fs::exists(file)) {
     if (IsDiagnosisOf(model.fit, folder / "diagnosis")) {
       model.diagnosis = ReadDiagnosisFile(file);
     } else {
-      leave_out("diagnosis", "diagnose");
+      leave_out("diagnosis", "fit", "diagnose");
     }
+  }
+  if (const fs::path file = folder / "plan/plan.json"; fs::exists(file)) {
+    model.has_plan =
+        model.diagnosis && IsPlanOf(HashFile(folder / "diagnosis/diagnosis.json"), file);
+    if (!model.has_plan) leave_out("plan", "diagnosis", "plan");
   }
   return model;
 }
@@ -111,6 +108,35 @@ bool OpenLedger(const fs::path& folder, ReportedRun* run) {
   return true;
 }
 
+// How often a configuration has an effect of the catalogue or a law of this name, the material
+// included.
+int CountOf(const std::string& effect, const json& configuration) {
+  int count = configuration.value("material", json::object()).value("law", "") == effect;
+  for (const json& one : configuration.value("effects", json::array()))
+    count += one.value("type", "") == effect || one.value("name", "") == effect;
+  return count;
+}
+
+// What is predicted and fitted of each recording. Where the recordings lie does not matter.
+json FramesOf(const Manifest& manifest) {
+  json recordings = manifest.configuration.value("recordings", json::array());
+  for (json& recording : recordings) recording.erase("recording");
+  return recordings;
+}
+
+// Whether the run `after` has the model of the run `before` with this effect added, and the same
+// recordings.
+bool IsAddedTo(const fs::path& before, const std::string& effect, const fs::path& after) {
+  const Manifest old = LoadManifest(before / "manifest.json");
+  const Manifest added = LoadManifest(after / "manifest.json");
+  try {
+    return CountOf(effect, added.configuration) > CountOf(effect, old.configuration) &&
+           added.inputs == old.inputs && FramesOf(added) == FramesOf(old);
+  } catch (const json::exception&) {
+    return false;  // a configuration of another kind of run
+  }
+}
+
 }  // namespace
 
 bool IsFittedRun(const fs::path& folder) {
@@ -128,13 +154,16 @@ ReportedRun OpenReportedRun(const fs::path& folder) {
   for (size_t plus = run.models.front().name.rfind('+'); plus != std::string::npos;
        plus = run.models.front().name.rfind('+')) {
     const std::string before = run.models.front().name.substr(0, plus);
-    if (before.empty() || !IsFittedRun(beside / before)) break;
+    const std::string effect = run.models.front().name.substr(plus + 1);
+    if (before.empty() || !IsFittedRun(beside / before) ||
+        !IsAddedTo(beside / before, effect, run.models.front().folder))
+      break;
     if (IsOfAnotherVersion(beside / before)) {
       run.notes.push_back(fmt::format(
           "The run {} is of another version of Lacuna and is not shown; fit it again.", before));
       break;
     }
-    run.models.front().added = run.models.front().name.substr(plus + 1);
+    run.models.front().added = effect;
     run.models.insert(run.models.begin(), OpenModel(beside / before, "", &run.notes));
   }
   return run;

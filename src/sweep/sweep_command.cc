@@ -16,36 +16,6 @@
 namespace lacuna {
 namespace {
 
-CaseOutcome Fit(const Config& experiment, Progress* progress) {
-  const CalibrationRecord record = RunCalibration(ReadPredictionStudy(experiment), progress);
-  CaseOutcome outcome;
-  outcome.done = record.usable;
-  if (!record.usable) outcome.message = record.message;
-  auto& numbers = outcome.numbers;
-  numbers = {{"rms_over_sigma", record.rms}, {"start_rms_over_sigma", record.start_rms}};
-  for (const FittedRecording& recording : record.recordings) {
-    const auto add = [&](const char* kind, const MisfitMeasure& measure) {
-      if (measure.frames == 0) return;
-      numbers.emplace_back(fmt::format("{}.{}_rms_m", recording.name, kind), measure.rms);
-      numbers.emplace_back(fmt::format("{}.{}_rms_over_sigma", recording.name, kind),
-                           measure.rms_over_sigma);
-    };
-    add("fitted", recording.in_fit);
-    add("held_out", recording.held_out);
-  }
-  for (const FittedParameter& parameter : record.parameters) {
-    const std::string unit = parameter.unit.empty() ? "" : "_" + parameter.unit;
-    numbers.emplace_back(parameter.name + unit, parameter.estimate.value);
-    numbers.emplace_back(parameter.name + "_low" + unit, parameter.estimate.low);
-    numbers.emplace_back(parameter.name + "_high" + unit, parameter.estimate.high);
-    outcome.words.emplace_back(parameter.name, VerdictName(parameter.estimate.verdict));
-  }
-  numbers.emplace_back("predictions", record.predictions);
-  numbers.emplace_back("nodes", static_cast<double>(record.mesh.node_count));
-  numbers.emplace_back("tetrahedra", static_cast<double>(record.mesh.tet_count));
-  return outcome;
-}
-
 int SearchSeed(const Config& experiment) { return experiment.Integer("seed", 1, 1 << 30, 1); }
 
 CaseOutcome RunCaseSearch(const Config& experiment, const std::filesystem::path& folder,
@@ -166,6 +136,38 @@ CaseOutcome OutcomeOf(const RunRecord& record) {
   return outcome;
 }
 
+CaseOutcome OutcomeOf(const CalibrationRecord& record) {
+  CaseOutcome outcome;
+  outcome.done = record.usable;
+  if (!record.usable) outcome.message = record.message;
+  auto& numbers = outcome.numbers;
+  numbers = {{"rms_over_sigma", record.rms}, {"start_rms_over_sigma", record.start_rms}};
+  for (const FittedRecording& recording : record.recordings) {
+    const auto add = [&](const char* kind, const MisfitMeasure& measure) {
+      if (measure.frames == 0) return;
+      numbers.emplace_back(fmt::format("{}.{}_rms_m", recording.name, kind), measure.rms);
+      numbers.emplace_back(fmt::format("{}.{}_rms_over_sigma", recording.name, kind),
+                           measure.rms_over_sigma);
+    };
+    add("fitted", recording.in_fit);
+    add("held_out", recording.held_out);
+  }
+  for (const FittedParameter& parameter : record.parameters) {
+    const std::string unit = parameter.unit.empty() ? "" : "_" + parameter.unit;
+    numbers.emplace_back(parameter.name + unit, parameter.estimate.value);
+    numbers.emplace_back(parameter.name + "_at_limit" + unit,
+                         parameter.at_limit.value_or(kNotMeasured));
+    numbers.emplace_back(parameter.name + "_low" + unit, parameter.estimate.low);
+    numbers.emplace_back(parameter.name + "_high" + unit, parameter.estimate.high);
+    outcome.words.emplace_back(parameter.name + "_verdict",
+                               VerdictName(parameter.estimate.verdict));
+  }
+  numbers.emplace_back("predictions", record.predictions);
+  numbers.emplace_back("nodes", static_cast<double>(record.mesh.node_count));
+  numbers.emplace_back("tetrahedra", static_cast<double>(record.mesh.tet_count));
+  return outcome;
+}
+
 const std::vector<std::pair<std::string, SweepCommand>>& SweepCommands() {
   static const std::vector<std::pair<std::string, SweepCommand>> commands = {
       {"reconstruct", SweepCommand::kReconstruct},
@@ -209,7 +211,8 @@ CaseOutcome RunCommand(SweepCommand command, const SweepSettings& settings,
   const Config experiment = Config::Load(folder / "experiment.yaml");
   if (command == SweepCommand::kReconstruct)
     return OutcomeOf(RunReconstruction(ReadReconstruction(experiment), progress));
-  if (command == SweepCommand::kFit) return Fit(experiment, progress);
+  if (command == SweepCommand::kFit)
+    return OutcomeOf(RunCalibration(ReadPredictionStudy(experiment), progress));
   return RunCaseSearch(experiment, folder, progress);
 }
 

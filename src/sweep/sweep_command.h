@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "record/calibration_record.h"
 #include "record/run_record.h"
 
 namespace lacuna {
@@ -42,6 +43,10 @@ struct CaseOutcome {
 // The outcome of a reconstruction: its residuals, the size of its mesh, the frames that could not
 // be followed, and all measures of its record.
 CaseOutcome OutcomeOf(const RunRecord& record);
+// The outcome of a fit: its residuals, and of each parameter the value, the value with infinitely
+// fine elements and time steps (FittedParameter::at_limit), the 95 % interval of the latter, and as
+// a word its verdict.
+CaseOutcome OutcomeOf(const CalibrationRecord& record);
 
 // The files of a case: name within its folder → YAML.
 using CaseFiles = std::map<std::string, std::string>;

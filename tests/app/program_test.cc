@@ -15,6 +15,8 @@
 
 #include "scan/recording_writer.h"
 #include "support/ended_program.h"
+#include "support/small_ledger.h"
+#include "support/small_run.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -22,6 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 Ending Lacuna(const std::string& arguments) {
   return EndingOf(std::string(LACUNA_PROGRAM) + " " + arguments);
@@ -154,6 +157,58 @@ TEST(Simulate, DoesNotReplaceWhatTheExperimentReads) {
   EXPECT_THAT(ending.said, HasSubstr("which the experiment reads"));
   EXPECT_EQ(FileContent(folder / "seen/markers.csv"), markers);
   EXPECT_FALSE(fs::exists(folder / "motion"));
+}
+
+// The comparison and the diagnosis of a fit stay in the folder when the run is fitted again.
+TEST(Lacuna, ResultsOfAnEarlierFitAreNotPrintedAsThoseOfTheRun) {
+  const TemporaryFolder folder;
+  const std::string run = folder / "bar";
+  CalibrationRecord fit = SmallLedger().models[0].record;
+  WriteSmallFit(run, {}, fit);
+  WriteSmallComparison(run, {});
+  WriteSmallDiagnosis(run, *SmallLedger().models[0].diagnosis);
+  EXPECT_THAT(Lacuna("info " + run).said, HasSubstr("missing {drag}"));
+  EXPECT_THAT(Lacuna("compare --stored " + run).said, Not(HasSubstr("earlier fit")));
+
+  fit.rms = 7;
+  WriteSmallFit(folder / "again", {}, fit);
+  for (const char* result : {"comparison", "diagnosis"})
+    fs::copy(folder / "bar" / result, folder / "again" / result);
+  const std::string again = folder / "again";
+  const Ending info = Lacuna("info " + again);
+  EXPECT_EQ(info.status, 0) << info.said;
+  EXPECT_THAT(info.said, Not(HasSubstr("missing {drag}")));
+  EXPECT_THAT(info.said, HasSubstr("`lacuna diagnose " + again + "` makes a new one"));
+  const Ending stored = Lacuna("compare --stored " + again);
+  EXPECT_EQ(stored.status, 2);
+  EXPECT_THAT(stored.said, HasSubstr("`lacuna compare " + again + "` makes a new one"));
+}
+
+TEST(Lacuna, InfoSaysWhichCommandReadsAnExperimentOrAScene) {
+  for (const auto& [name, kind] : {std::pair("hidden_effect.yaml", "`lacuna fit`"),
+                                   std::pair("bend.yaml", "`lacuna reconstruct`"),
+                                   std::pair("scenes/bend.yaml", "is a scene")}) {
+    const Ending ending = Lacuna("info " + Experiment(name));
+    EXPECT_EQ(ending.status, 2) << name;
+    EXPECT_THAT(ending.said, HasSubstr(kind));
+    EXPECT_THAT(ending.said, HasSubstr("`lacuna validate " + Experiment(name)));
+  }
+}
+
+TEST(Lacuna, SaysThatAnOptionOfTheProgramStandsBeforeTheCommand) {
+  const Ending ending = Lacuna("fit x.yaml --threads 2");
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_THAT(ending.said,
+              HasSubstr("\"--threads\" stands before the command: lacuna --threads 2 fit ..."));
+  EXPECT_THAT(Lacuna("fit x.yaml --memory-limit=4GB").said,
+              HasSubstr("lacuna --memory-limit=4GB fit ..."));
+}
+
+TEST(Lacuna, TheNumbersOfFiguresMayStandBeforeTheirFolder) {
+  const TemporaryFolder folder;
+  const Ending ending = Lacuna("figures -o " + (folder / "f").string() + " --only 1 /nowhere");
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_THAT(ending.said, HasSubstr("/nowhere/figure1.yaml"));
 }
 
 TEST(Sweep, PassesTheMemoryLimitOnToTheTasksOfSlurm) {

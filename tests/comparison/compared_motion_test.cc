@@ -23,6 +23,18 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
+TEST(ComparedMotion, SaysThatForcesAreOfUnknownScaleWhereAModulusIsNotDetermined) {
+  FittedParameter modulus, ratio;
+  modulus.name = "young_modulus";
+  modulus.unit = "Pa";
+  ratio.name = "poisson_ratio";
+  ratio.estimate.verdict = ParameterEstimate::Verdict::kFlat;
+  EXPECT_FALSE(NoteOnScale({modulus, ratio}));
+  modulus.estimate.verdict = ParameterEstimate::Verdict::kFlat;
+  EXPECT_THAT(NoteOnScale({ratio, modulus}),
+              testing::Optional(HasSubstr("do not determine young_modulus")));
+}
+
 TEST(ComparedMotion, AddsStrainAndHeightAndWritesFieldsAndTheForce) {
   const TemporaryFolder folder;
   HeldBarTruth truth;

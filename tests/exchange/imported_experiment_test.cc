@@ -50,7 +50,7 @@ TEST(ImportedExperiment, CanBeReadOnceItIsCompleted) {
     EXPECT_EQ(body.nodes, model.mesh.nodes);
     EXPECT_EQ(body.tets, model.mesh.tets);
     const Region& clamp = study.recordings[0].recording.object.fixed.at(0).region;
-    EXPECT_EQ(SelectNodes(clamp, body.nodes), model.node_sets[1].nodes);
+    EXPECT_EQ(SelectNodes(clamp, body), model.node_sets[1].nodes);
   }
 }
 
@@ -115,6 +115,28 @@ TEST(ImportedExperiment, WritesNoLineOfTheFilesOwn) {
   }
   EXPECT_THAT(FileContent(folder / "study/box.yaml"),
               HasSubstr("# The file has another material, b mesh: {}, which is not used\n"));
+}
+
+TEST(ImportedExperiment, SaysWhichOfSeveralMaterialsItTakes) {
+  TemporaryFolder folder;
+  ImportedModel model = ABox();
+  const auto material = [&](const char* name) {
+    WriteImportedExperiment(model, name, "box.inp", folder / name);
+    const std::string text = FileContent(folder / name / (std::string(name) + ".yaml"));
+    const size_t begin = text.find("material:");
+    return text.substr(begin, text.find('\n', begin) - begin);
+  };
+  model.materials = {{"GEL", 1e5, 0.45, 1000.0}};
+  EXPECT_EQ(MaterialOfBody(model), &model.materials[0]);
+  EXPECT_THAT(material("one"), testing::Not(HasSubstr("TO DO")));
+  model.materials.insert(model.materials.begin(), {"FOAM", {}, {}, 50.0});
+  model.materials.push_back({"STEEL", 2e11, 0.3, 7800.0});
+  EXPECT_EQ(MaterialOfBody(model), &model.materials[1]);
+  EXPECT_THAT(material("three"),
+              HasSubstr("young_modulus: 100000 Pa, poisson_ratio: 0.45}   # TO DO: the file has 3 "
+                        "materials; that of GEL is taken for the whole body"));
+  model.materials = {{"GEL", 1e5, 0.45, 1000.0, true}};
+  EXPECT_THAT(material("instantaneous"), HasSubstr("# TO DO: the modulus of the shortest times"));
 }
 
 TEST(ImportedExperiment, OverwritesNothingAndSaysWhatIsUnknown) {

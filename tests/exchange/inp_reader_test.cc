@@ -109,6 +109,9 @@ TEST(InpReader, RefusesWhatItCannotTrustWithTheLine) {
   EXPECT_THAT(ErrorOf("*INCLUDE, INPUT=mesh.inp\n"), HasSubstr("*INCLUDE"));
   EXPECT_THAT(ErrorOf(Replaced(tet, "*NODE", "*System\n1., 0., 0.\n*NODE")),
               HasSubstr(":4: *SYSTEM is not read: give the coordinates of all nodes"));
+  EXPECT_THAT(
+      ErrorOf(Replaced(tet, "*Boundary", "*Instance, name=I, part=P\n0., 0., 5.\n*Boundary")),
+      HasSubstr(":24: *INSTANCE with a translation or a rotation is not read"));
   EXPECT_THAT(ErrorOf("1, 2, 3\n"), HasSubstr(":1: expected a keyword"));
   EXPECT_THAT(ErrorOf(""), HasSubstr("no tetrahedra"));
 }
@@ -176,6 +179,26 @@ TEST(InpReader, ReadsTheNodesOfAnElementSet) {
   EXPECT_THAT(ErrorOf(with("*Nset, nset=whole, elset=soft\n10")),
               HasSubstr(":19: expected a keyword line"));
   EXPECT_THAT(ErrorOf(with("*Nset, nset=whole, elset")), HasSubstr(":18: *NSET needs ELSET"));
+}
+
+TEST(InpReader, ListsAnInstanceThatIsNotMovedAsNotRead) {
+  EXPECT_EQ(Read(Replaced(kTet, "*Boundary", "*Instance, name=I, part=P\n*Boundary")).not_read[0],
+            "line 23: *Instance, name=I, part=P");
+}
+
+TEST(InpReader, FindsASetWhoseNameStandsInQuotes) {
+  const ImportedModel model = Read(
+      Replaced(Replaced(kTet, "nset=foot, ", "nset=\"my foot\", "), "foot, 40", "\"My Foot\", 40"));
+  EXPECT_EQ(model.node_sets[1].name, "MY FOOT");
+  EXPECT_THAT(model.node_sets[2].nodes, ElementsAre(0, 1, 2, 3));
+}
+
+TEST(InpReader, NotesTheModulusOfTheShortestTimes) {
+  EXPECT_FALSE(
+      Read(Replaced(kTet, "*Elastic", "*Elastic, moduli=long term")).materials[0].is_instantaneous);
+  EXPECT_TRUE(Read(Replaced(kTet, "*Elastic", "*Elastic, moduli=instantaneous"))
+                  .materials[0]
+                  .is_instantaneous);
 }
 
 TEST(InpReader, RefusesSetsWithParametersThatItDoesNotKnow) {

@@ -19,6 +19,7 @@
 namespace lacuna {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -108,6 +109,36 @@ TEST(InpWriter, RefusesDampingThatIsNotProportionalToTheStiffness) {
   EXPECT_THAT(MissingParts(bar.Describe(), InpDialect::kCalculix),
               ElementsAre("stiffness_damping"));
   EXPECT_THAT(InpText(bar.Describe(), InpDialect::kCalculix), Not(HasSubstr("*DAMPING, ALPHA")));
+}
+
+// Lacuna's quasi-static steps have velocities, those of the other programs have none.
+TEST(InpWriter, HasNoDampingInAQuasiStaticMotion) {
+  Cantilever bar("corotational", {2, 1, 1}, 1);
+  bar.model.effects.push_back(MakeEffect("mass_damping", {{"alpha", 2}}));
+  bar.model.effects.push_back(MakeEffect(
+      "stiffness_damping", {{"beta", 0.01}, {"young_modulus", 2e5}, {"poisson_ratio", 0.4}}));
+  bar.frames = {0.1};
+  bar.options.step.scheme = TimeScheme::kQuasiStatic;
+  for (const InpDialect dialect :
+       {InpDialect::kCalculix, InpDialect::kCalculixPointMasses, InpDialect::kAbaqus}) {
+    EXPECT_THAT(MissingParts(bar.Describe(), dialect),
+                ElementsAre("mass_damping", "stiffness_damping"));
+    EXPECT_THAT(InpText(bar.Describe(), dialect), Not(HasSubstr("*DAMPING, ALPHA=")));
+  }
+}
+
+// The interval of a fit is not that of the value with the elements and steps of the fit.
+TEST(InpWriter, NamesTheValueThatAnIntervalBelongsTo) {
+  PortableModel model = Cantilever("linear", {2, 1, 1}, 1).Describe();
+  model.parameters = {{"young_modulus", "Pa", {29000}, true, 40000, 142000}};
+  EXPECT_THAT(InpText(model, InpDialect::kCalculix),
+              AllOf(HasSubstr("young_modulus = 29000 Pa (fitted; 95 % interval 40000 to 142000)\n"),
+                    Not(HasSubstr("at_limit"))));
+  model.parameters[0].at_limit = 75000;
+  EXPECT_THAT(InpText(model, InpDialect::kCalculix),
+              AllOf(HasSubstr("young_modulus = 29000 Pa (fitted; at_limit 75000, 95 % interval "
+                              "40000 to 142000)\n"),
+                    HasSubstr("infinitely fine")));
 }
 
 // By hand, E = 1e5, ν = 0.4: μ = 35714.2857…, K = 166666.6…, hence C10 = 17857.1428…, D1 = 1.2e-5.

@@ -199,6 +199,16 @@ TEST(ModelJson, HasTheDensityThatWasFitted) {
   EXPECT_TRUE(Missing(JsonCounterparts(model)).empty());
 }
 
+TEST(ModelJson, HasTheValueThatAnIntervalBelongsTo) {
+  PortableModel model = Cantilever("linear", {2, 1, 1}, 1).Describe();
+  model.parameters = {{"young_modulus", "Pa", {29000}, true, 40000, 142000, 75000},
+                      {"poisson_ratio", "", {0.4}, true, 0.3, 0.45}};
+  const auto json = ModelJson(model, "model.msh");
+  EXPECT_EQ(json.at("fit").at(0).at("value"), 29000);
+  EXPECT_EQ(json.at("fit").at(0).at("at_limit"), 75000);
+  EXPECT_FALSE(json.at("fit").at(1).contains("at_limit"));
+}
+
 TEST(ModelJson, DescribesTranslationsAndTurns) {
   Cantilever bar("linear", {2, 1, 1}, 1);
   const Eigen::Matrix3Xd rest = bar.mesh.nodes(Eigen::all, bar.model.grips[0].nodes);

@@ -48,6 +48,10 @@ class PythonModule(unittest.TestCase):
         np.testing.assert_array_equal(model.values, [p["value"] for p in stored])
         np.testing.assert_array_equal(model.intervals[0],
                                       [stored[0]["low_95"], stored[0]["high_95"]])
+        # The small experiment may miss the data by too much for an extrapolation.
+        limits = [p.get("at_limit") for p in stored]
+        self.assertEqual([p.at_limit for p in model.parameters], limits)
+        np.testing.assert_array_equal(model.at_limit, np.array(limits, dtype=float))
 
     def test_progress_is_told(self):
         begun = [event["stage"] for event in self.events if event["event"] == "begin"]

@@ -75,7 +75,8 @@ TEST(JoinedSpace, DrawsFromThePredictiveDistribution) {
   const Eigen::MatrixXd by_amounts = two.columns(Eigen::all, known);
   const Eigen::MatrixXd of_rows = two.covariance + by_amounts * posterior * by_amounts.transpose();
   const Eigen::MatrixXd from_rows = two.covariance.llt().solve(two.columns).transpose();
-  const Eigen::VectorXd expected = -from_rows * (by_amounts * mean);
+  const Eigen::VectorXd by_mean = by_amounts * mean;
+  const Eigen::VectorXd expected = -from_rows * by_mean;
   const Eigen::MatrixXd spread = from_rows * of_rows * from_rows.transpose();
 
   constexpr int kDraws = 20000;

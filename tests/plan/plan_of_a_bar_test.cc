@@ -8,8 +8,10 @@
 
 #include "calibration/calibration_run.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/parallel.h"
 #include "diagnosis/diagnosis_run.h"
+#include "diagnosis/recording_power.h"
 #include "plan/plan_run.h"
 #include "plan/planner.h"
 #include "prediction/played_recording.h"
@@ -84,10 +86,34 @@ class PlanOfABar : public ::testing::Test {
     const PredictionStudy joint = ReadPredictionStudy(Config::Load(experiment));
     ASSERT_EQ(joint.recordings.size(), 2u);
     EXPECT_EQ(joint.recordings[1].name, plan.outcomes.front().name);
-    EXPECT_EQ(joint.name, "bar+" + plan.outcomes.front().name);
+    EXPECT_EQ(joint.name, "bar-with-" + plan.outcomes.front().name);
     EXPECT_EQ(std::filesystem::weakly_canonical(joint.output),
               std::filesystem::weakly_canonical(folder_ / joint.name));
     EXPECT_EQ(joint.recordings[0].name, OpenRun(Run()).study.recordings.front().name);
+  }
+
+  // With less noise, so that a rival is named.
+  void ExpectWhatTheDiagnosisHasNotSimulatedIsSimulated() const {
+    const FittedRun fitted = OpenRun(Run());
+    KeptDiagnosis kept = *FindDiagnosis(Run());
+    kept.decision.baseline.variance *= 1e-4;
+    const std::string known = RivalsOf(kept.record).front().effect;
+    kept.record.decision.power.assign(1, {});
+    kept.record.decision.power[0].truth = {known};
+    kept.record.decision.power[0].named = 0.125;
+    SilentProgress silent;
+    const PlanRecord plan = MakePlan({fitted, kept.record, kept.decision}, {}, &silent);
+    double most = 0;
+    for (const PlannedRival& rival : plan.rivals) {
+      if (rival.effect == known) {
+        EXPECT_EQ(rival.named_now, 0.125);
+        continue;
+      }
+      const auto power = PowerToFind(kept.decision, rival.effect, true);
+      EXPECT_EQ(rival.named_now, power ? power->named : 0) << rival.effect;
+      most = std::max(most, rival.named_now);
+    }
+    EXPECT_GT(most, 0);
   }
 
   // A mass beside the object.
@@ -175,6 +201,7 @@ TEST_F(PlanOfABar, PrefersWhatPartsTheRivals) {
   const PlanRecord kept = RunPlan(Run(), folder_ / "protocols.yaml", &silent);
   std::ifstream stream(PlanFile(Run()));
   const nlohmann::json written = nlohmann::json::parse(stream);
+  EXPECT_EQ(written.at("diagnosis"), HashFile(Run() / "diagnosis/diagnosis.json"));
   EXPECT_EQ(written.at("outcomes").size(), 1u);
   EXPECT_EQ(written.at("outcomes")[0].at("name"), "harder");
   const std::string text = PlanReport(kept);
@@ -182,6 +209,7 @@ TEST_F(PlanOfABar, PrefersWhatPartsTheRivals) {
   EXPECT_THAT(text, HasSubstr("3 times the pull"));
   EXPECT_THAT(text, HasSubstr("least λ"));
 
+  ExpectWhatTheDiagnosisHasNotSimulatedIsSimulated();
   ExpectPlayable(kept);
   ExpectFailuresAreSaid();
   ExpectThePlanIsKeptWithoutItsExperiment();

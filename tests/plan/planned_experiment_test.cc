@@ -30,7 +30,7 @@ TEST(PlannedExperiment, IsReadBackWhateverCharactersTheNameOfTheStudyHolds) {
 
   std::filesystem::copy(folder / "predicted", folder / "measured");
   const PredictionStudy joint = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
-  EXPECT_EQ(joint.name, "bar: #2 \"soft\"+again");
+  EXPECT_EQ(joint.name, "bar: #2 \"soft\"-with-again");
   EXPECT_EQ(std::filesystem::weakly_canonical(joint.output),
             std::filesystem::weakly_canonical(bar.folder / "runs" / joint.name));
   EXPECT_EQ(joint.recordings.size(), 2u);

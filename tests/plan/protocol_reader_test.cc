@@ -76,6 +76,28 @@ TEST_F(ProtocolReader, NamesWhatIsWrongAndWhere) {
       HasSubstr("axis"));
 }
 
+// Frames every 10 ms show at most 50 Hz, and steps of 5 ms follow at most 33.3 Hz.
+TEST_F(ProtocolReader, RefusesAShakingThatCannotBeSeenOrSimulated) {
+  const auto with = [](const std::string& amplitude, const std::string& frequency) {
+    return "schema_version: 1\nprotocols:\n  - {name: a, shake: {amplitude: " + amplitude +
+           ", frequency: " + frequency + "}}\n";
+  };
+  EXPECT_EQ(ErrorOf(with("[0, 5 mm, 0]", "49 Hz")), "");
+  EXPECT_THAT(ErrorOf(with("[0, 5 mm, 0]", "51 Hz")),
+              HasSubstr("shake.frequency: at most 50 Hz can be resolved"));
+  EXPECT_THAT(ErrorOf(with("[0, 0, 0]", "8 Hz")), HasSubstr("shake.amplitude: expected"));
+  bar_.study.time_step = 0.005;
+  EXPECT_EQ(ErrorOf(with("[0, 5 mm, 0]", "33 Hz")), "");
+  EXPECT_THAT(ErrorOf(with("[0, 5 mm, 0]", "49 Hz")),
+              HasSubstr("shake.frequency: at most 33.3 Hz can be resolved"));
+  // The stock protocols keep to that, too: four periods in 0.2 s are 19.4 Hz.
+  bar_.study.time_step = 0.0125;
+  for (const Protocol& protocol : StockProtocols(bar_.study, bar_.mesh))
+    if (protocol.shake) {
+      EXPECT_NEAR(protocol.shake->frequency, 1 / (6 * 0.0125), 1e-9);
+    }
+}
+
 TEST_F(ProtocolReader, StockSuitsTheRecording) {
   const std::vector<Protocol> stock = StockProtocols(bar_.study, bar_.mesh);
   for (const char* name : {"repeat", "longer", "pull twice", "turn about y", "shake along z",

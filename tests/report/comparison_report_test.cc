@@ -61,6 +61,22 @@ TEST(ComparisonReport, SaysHowLargeTheErrorIsAndThatItIsNotNoise) {
   EXPECT_THAT(text, Not(HasSubstr("the place where it was measured")));
 }
 
+TEST(ComparisonReport, ReportsADriftOnlyWhereItIsNotNoise) {
+  ComparisonRecord record = Example();
+  NoiseFloor& noise_floor = record.recordings[0].noise_floor;
+  noise_floor.rest_deviation = 1e-4;
+  noise_floor.rests = {{0, 0.1, 1e-4, 2.4e-3, 2e-3}, {0.2, 2, 1e-4, 1e-5, 2e-5}};
+  const auto told = [&] {
+    std::string all;
+    for (const std::string& sentence : DescribeComparison(record)) all += sentence;
+    return all;
+  };
+  EXPECT_THAT(told(), HasSubstr("(2 periods), coordinates scatter by 0.100 mm about a straight "
+                                "line."));
+  noise_floor.rests[1].drift = 5e-4;
+  EXPECT_THAT(told(), HasSubstr("about a straight line and drift by up to 0.500 mm per second."));
+}
+
 TEST(ComparisonReport, SaysHowMuchTheFittedPlacesHide) {
   ComparisonRecord record = Example();
   record.recordings[0].parts[0].rms_at_measured_places = 1.4e-3;

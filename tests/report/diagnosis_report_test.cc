@@ -37,7 +37,7 @@ DiagnosisRecord MissingDrag() {
 }
 
 TEST(DiagnosisReport, ShowsVerdictReasonsAndNextCommand) {
-  const std::string text = DiagnosisReport(MissingDrag(), "runs/bar");
+  const std::string text = DiagnosisReport(MissingDrag(), {}, "runs/bar");
   EXPECT_THAT(text, HasSubstr("\nmissing {drag}\n"));
   EXPECT_THAT(text, HasSubstr("goes from 5.0 σ to 1.0 σ"));
   EXPECT_THAT(text, HasSubstr("2 [1, 3] kg/m^3"));
@@ -51,7 +51,7 @@ TEST(DiagnosisReport, ShowsWhatWouldHaveBeenSeenWhereNothingIsMissing) {
   record.verdict = Verdict::kAdequate;
   record.effects.clear();
   record.ranking[1].sizes[0].detectable = INFINITY;
-  const std::string text = DiagnosisReport(record, "runs/bar");
+  const std::string text = DiagnosisReport(record, {}, "runs/bar");
   EXPECT_THAT(text, HasSubstr("Smallest size that these recordings would reveal"));
   EXPECT_THAT(text, HasSubstr("0.5 kg/m^3"));
   EXPECT_THAT(text, HasSubstr("no size would be detectable"));
@@ -61,7 +61,7 @@ TEST(DiagnosisReport, ShowsFromWhichDataAnEffectRemovesMisfit) {
   DiagnosisRecord record = MissingDrag();
   const auto text = [&](const ByDataKind& removed) {
     record.ranking[0].refit->removed = removed;
-    return DiagnosisReport(record, "runs/bar");
+    return DiagnosisReport(record, {}, "runs/bar");
   };
   EXPECT_THAT(text({62, 0, 38}), HasSubstr("      of the squared misfit that it removes, 62 % "
                                            "belongs to the markers and 38 % to the forces\n"));
@@ -69,13 +69,25 @@ TEST(DiagnosisReport, ShowsFromWhichDataAnEffectRemovesMisfit) {
                                              "by +2.5 σ² and that of the forces by -34.0 σ²\n"));
   EXPECT_THAT(text({0, 0, 0}), Not(HasSubstr("squared misfit that")));
   record.ranking[0].refit->removed.reset();  // one kind of data, or a diagnosis of earlier versions
-  EXPECT_THAT(DiagnosisReport(record, "runs/bar"), Not(HasSubstr("that it removes")));
+  EXPECT_THAT(DiagnosisReport(record, {}, "runs/bar"), Not(HasSubstr("that it removes")));
+}
+
+TEST(DiagnosisReport, SuggestsAPlanWhereARecordingCanBePlanned) {
+  DiagnosisRecord record = MissingDrag();
+  record.verdict = Verdict::kAmbiguous;
+  record.effects = {"drag", "swelling"};
+  record.next_steps = {SeparateLookAlikes{"drag"}};
+  CalibrationRecord fit;
+  fit.recordings.resize(1);
+  EXPECT_THAT(DiagnosisReport(record, fit, "runs/bar"), HasSubstr("lacuna plan runs/bar"));
+  fit.recordings[0].scan.emplace();
+  EXPECT_THAT(DiagnosisReport(record, fit, "runs/bar"), Not(HasSubstr("lacuna plan")));
 }
 
 TEST(DiagnosisReport, ShowsWhyARefitIsNotUsable) {
   DiagnosisRecord record = MissingDrag();
   record.ranking[0].refit->message = "no step could be taken";
-  const std::string text = DiagnosisReport(record, "runs/bar");
+  const std::string text = DiagnosisReport(record, {}, "runs/bar");
   EXPECT_THAT(text, HasSubstr("not usable"));
   EXPECT_THAT(text, HasSubstr("no step could be taken"));
 }
@@ -83,7 +95,7 @@ TEST(DiagnosisReport, ShowsWhyARefitIsNotUsable) {
 TEST(DiagnosisReport, ShowsWhyARefitHasNotConverged) {
   DiagnosisRecord record = MissingDrag();
   record.ranking[0].refit->unconverged = "the search was ended";
-  const std::string text = DiagnosisReport(record, "runs/bar");
+  const std::string text = DiagnosisReport(record, {}, "runs/bar");
   EXPECT_THAT(text, HasSubstr("      the search was ended\n"));
   EXPECT_THAT(text, HasSubstr("2 [1, 3] kg/m^3")) << "the refit counts";
 }

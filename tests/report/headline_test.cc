@@ -7,6 +7,7 @@ namespace lacuna {
 namespace {
 
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -102,8 +103,17 @@ TEST(Headline, SaysThatAnEffectWhoseSizeMayBeZeroDoesNotCount) {
   after.calibration.parameters[0].estimate.high = 3;
   EXPECT_EQ(
       Headline({before, after}).back(),
-      "A further diagnosis names drag (98 %), but once it is fitted, its size may be zero, so "
-      "that it does not count.");
+      "The diagnosis names drag (98 %), but once it is fitted, its size may be zero, so that it "
+      "does not count.");
+  const ReportedModel first = Model(4e-4, 2.4);
+  EXPECT_THAT(Headline({first, before, after}).back(), HasSubstr("A further diagnosis names drag"));
+  // An effect that was added although the diagnosis has not named it alone.
+  before.diagnosis->verdict = Verdict::kAmbiguous;
+  before.diagnosis->effects = {"drag", "viscoelastic_branch"};
+  EXPECT_THAT(Headline({before, after}),
+              ElementsAre(HasSubstr("The model meets"), HasSubstr("cannot tell which of these"),
+                          "A model with drag was fitted, too, but its size may be zero, so that it "
+                          "does not count."));
   after.calibration.parameters[0].estimate.low = 1;
   EXPECT_THAT(Headline({before, after}).back(), HasSubstr("With drag, the error falls by 5 % to"));
   after.errors.held_out_rms = 2.1e-4;
@@ -194,6 +204,9 @@ TEST(Headline, AnAmbiguousVerdictNamesTheSetAndTheExperiment) {
             "Something is missing, but these recordings cannot tell which of these: viscoelastic "
             "branch (60 %), or drag of the surrounding medium (40 %). To decide: Film it in a "
             "vacuum. `lacuna plan` computes which recording would.");
+  // Recordings of scans cannot be planned.
+  model.calibration.recordings[0].scan.emplace();
+  EXPECT_THAT(Headline({model}).at(1), EndsWith("To decide: Film it in a vacuum."));
 }
 
 TEST(Headline, EveryOtherVerdictHasItsSentence) {

@@ -11,6 +11,7 @@
 #include "core/json_file.h"
 #include "record/manifest.h"
 #include "record/packed_array.h"
+#include "record/plan_record.h"
 #include "report/reported_run.h"
 #include "support/small_ledger.h"
 #include "support/small_run.h"
@@ -70,6 +71,61 @@ TEST(ReportDocument, AnAddedModelIsShownAfterTheOneThatItWasMadeFrom) {
   EXPECT_EQ(run.at("models").at(1).at("added"), "drag");
 }
 
+// A run with another recording, such as a planned one, or without the effect of its name is no
+// model that `lacuna add` has made.
+TEST(ReportDocument, ARunBesideIsShownOnlyIfItsModelLacksTheAddedEffect) {
+  const TemporaryFolder folder;
+  WriteFit(folder / "bar", {});
+  const auto models = [&](const SmallRun& run) {
+    WriteFit(folder / run.name, run);
+    return ReportDocument({folder / run.name}).at("runs").at(0).at("models").size();
+  };
+  EXPECT_EQ(models({.name = "bar+drag", .effects = {"drag"}}), 2u);
+  EXPECT_EQ(models({.name = "bar+shake", .effects = {"drag"}}), 1u);
+  EXPECT_EQ(models({.name = "bar+swelling", .content = "more", .effects = {"swelling"}}), 1u);
+  // Both have it.
+  WriteFit(folder / "bar", {.effects = {"drag"}});
+  EXPECT_EQ(models({.name = "bar+drag", .effects = {"drag"}}), 1u);
+}
+
+// The same runs, of which the second is shown together with the first.
+TEST(ReportDocument, ARunIsComparedWithTheOneThatItWasMadeFrom) {
+  const TemporaryFolder folder;
+  WriteFit(folder / "bar", {});
+  WriteFit(folder / "bar+drag", {.name = "bar+drag", .effects = {"drag"}});
+  const json document = ReportDocument({folder / "bar", folder / "bar+drag"});
+  EXPECT_EQ(document.at("differences"),
+            json({{{"key", "effects"}, {"values", {"[]", ""}}},
+                  {{"key", "effects[0].type"}, {"values", {"", "drag"}}},
+                  {{"key", "name"}, {"values", {"bar", "bar+drag"}}}}));
+  WriteFit(folder / "bar+drag", {.name = "bar+drag", .held_out_frames = 12, .effects = {"drag"}});
+  EXPECT_THAT(WhyRefused({folder / "bar", folder / "bar+drag"}),
+              HasSubstr("the errors of bar and bar+drag cannot be compared"));
+}
+
+TEST(ReportDocument, APlanIsShownAsLongAsItsDiagnosisStands) {
+  const TemporaryFolder folder;
+  const Ledger ledger = SmallLedger();
+  const std::filesystem::path run = folder / "bar";
+  WriteFit(run, {});
+  WriteSmallDiagnosis(run, *ledger.models[0].diagnosis);
+  std::filesystem::create_directories(run / "plan");
+  PlanRecord plan;
+  plan.run = "bar";
+  plan.diagnosis = HashFile(run / "diagnosis/diagnosis.json");
+  WritePlanFile(plan, run / "plan/plan.json");
+  json document = ReportDocument({run}).at("runs").at(0);
+  EXPECT_EQ(document.at("models").at(0).at("plan").at("run"), "bar");
+  EXPECT_THAT(document.at("notes"), IsEmpty());
+  DiagnosisRecord other = *ledger.models[0].diagnosis;
+  other.time_step = 0.001;
+  WriteSmallDiagnosis(run, other);
+  document = ReportDocument({run}).at("runs").at(0);
+  EXPECT_TRUE(document.at("models").at(0).at("plan").is_null());
+  EXPECT_THAT(document.at("notes").at(0).get<std::string>(),
+              HasSubstr("is of an earlier diagnosis and is not shown; `lacuna plan` makes"));
+}
+
 TEST(ReportDocument, AModelWhoseAddedEffectMayBeZeroDoesNotCount) {
   const TemporaryFolder folder;
   Ledger ledger = SmallLedger();
@@ -83,7 +139,7 @@ TEST(ReportDocument, AModelWhoseAddedEffectMayBeZeroDoesNotCount) {
   const auto second = [&](double low) {
     estimate.low = low;
     estimate.high = 5;
-    WriteSmallFit(folder / "bar+drag", {.name = "bar+drag"}, record);
+    WriteSmallFit(folder / "bar+drag", {.name = "bar+drag", .effects = {"drag"}}, record);
     return ReportDocument({folder / "bar+drag"}).at("runs").at(0).at("models").at(1);
   };
   EXPECT_EQ(second(1).at("label"), "with drag");

@@ -50,6 +50,30 @@ TEST(SweepCommand, TheDistanceOfAReconstructionIsThatOfTheFramesThatWereFollowed
   EXPECT_FALSE(names.contains("scan_distance_m"));
 }
 
+// A word of the same name as a number would be a second column of that name.
+TEST(SweepCommand, EachColumnOfAFitHasANameOfItsOwn) {
+  CalibrationRecord record;
+  record.usable = true;
+  record.parameters.resize(2);
+  record.parameters[0].name = "young_modulus";
+  record.parameters[0].unit = "Pa";
+  record.parameters[0].estimate.value = 29000;
+  record.parameters[0].estimate.low = 40000;
+  record.parameters[0].at_limit = 75000;
+  record.parameters[1].name = "poisson_ratio";
+  const CaseOutcome outcome = OutcomeOf(record);
+  EXPECT_TRUE(outcome.done);
+  EXPECT_EQ(NumberOf(outcome, "young_modulus_Pa"), 29000);
+  EXPECT_EQ(NumberOf(outcome, "young_modulus_at_limit_Pa"), 75000);
+  EXPECT_EQ(NumberOf(outcome, "young_modulus_low_Pa"), 40000);
+  EXPECT_TRUE(std::isnan(NumberOf(outcome, "poisson_ratio_at_limit")));
+  std::set<std::string> names;
+  for (const auto& [name, value] : outcome.numbers) EXPECT_TRUE(names.insert(name).second) << name;
+  for (const auto& [name, text] : outcome.words) EXPECT_TRUE(names.insert(name).second) << name;
+  EXPECT_TRUE(names.contains("young_modulus_verdict"));
+  EXPECT_TRUE(names.contains("poisson_ratio_verdict"));
+}
+
 TEST(SweepCommand, WhatAReconstructionHasNotMeasuredIsEmpty) {
   RunRecord record = ThreeFrames();
   record.measures.clear();
