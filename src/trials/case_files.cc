@@ -2,32 +2,61 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/claim.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/workers.h"
 
 namespace lacuna {
+namespace {
 
-std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> FoldersWith(const char* file,
+                                               const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder))
     throw InputError(folder.string() + ": there is no such folder");
   std::vector<std::filesystem::path> cases;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (std::filesystem::exists(entry.path() / kTruthFile)) cases.push_back(entry.path());
+    if (std::filesystem::exists(entry.path() / file)) cases.push_back(entry.path());
   std::sort(cases.begin(), cases.end());
   return cases;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder) {
+  return FoldersWith(kTruthFile, folder);
+}
+
+std::vector<std::filesystem::path> SkippedCasesIn(const std::filesystem::path& folder) {
+  return FoldersWith(kSkippedFile, folder);
+}
+
+std::vector<size_t> WorkOrder(const std::vector<std::filesystem::path>& cases) {
+  std::vector<std::pair<std::string, size_t>> order;
+  for (size_t k = 0; k < cases.size(); ++k)
+    order.emplace_back(HashBytes(cases[k].filename().string()), k);
+  std::sort(order.begin(), order.end());
+  std::vector<size_t> indices;
+  for (const auto& [hash, k] : order) indices.push_back(k);
+  return indices;
 }
 
 int WorkOn(const std::vector<std::filesystem::path>& cases, const std::filesystem::path& result,
            int workers, const std::function<void(size_t k)>& job) {
   const auto folder = [&](size_t k) { return (cases[k] / result).parent_path(); };
+  const std::vector<size_t> order = WorkOrder(cases);
   const auto keep_failure = [&](size_t k, const std::string& reason) {
     WriteFileAtomically(folder(k) / kFailureFile, reason + "\n");
   };
   for (size_t k = 0; k < cases.size(); ++k) MakeFolder(folder(k));
-  return ShareOut(cases.size(), {.workers = workers, .crashed = keep_failure}, [&](size_t k) {
+  const auto keep_crash = [&](size_t at, const std::string& reason) {
+    keep_failure(order[at], reason);
+  };
+  return ShareOut(cases.size(), {.workers = workers, .crashed = keep_crash}, [&](size_t at) {
+    const size_t k = order[at];
     const Claim claim(folder(k) / kClaimFile);
     if (!claim.holds()) return;
     try {

@@ -18,16 +18,27 @@ inline constexpr char kDecisionFolder[] = "decision";
 inline constexpr char kOutcomeFile[] = "outcome.json";  // a TrialOutcome, written last
 inline constexpr char kClaimFile[] = "claimed";         // the lock of a process that works here
 inline constexpr char kFailureFile[] = "failed.txt";    // why there is no result
+inline constexpr char kSkippedFile[] = "skipped.txt";  // why the case was abandoned before it had a
+                                                       // truth
 
 // The folders of the cases of a suite, those with a truth, sorted by name. Throws InputError if the
 // suite has no folder.
 std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder);
 
+// The folders of the cases of a suite that MakeCase (trials/trial_suite.h) has abandoned, sorted by
+// name. Throws InputError if the suite has no folder.
+std::vector<std::filesystem::path> SkippedCasesIn(const std::filesystem::path& folder);
+
+// The order in which cases are made and WorkOn takes them, indices into `cases`: that of the hashes
+// of their names, which has nothing to do with what was hidden in them. Hence the first results of
+// a suite that is stopped early are a fair sample of all.
+std::vector<size_t> WorkOrder(const std::vector<std::filesystem::path>& cases);
+
 // For each case k whose folder has no file `result` yet, a path relative to it, calls job(k), which
-// makes it, in a process of its own, `workers` at a time. A lock beside the result (core/claim.h)
-// lets several calls share the cases. If the job throws InputError or its process crashes,
-// failed.txt beside the result has the reason until a later call has made the result. Returns the
-// result of ShareOut (core/workers.h), for which an InputError is no failure.
+// makes it, in WorkOrder and in a process of its own, `workers` at a time. A lock beside the result
+// (core/claim.h) lets several calls share the cases. If the job throws InputError or its process
+// crashes, failed.txt beside the result has the reason until a later call has made the result.
+// Returns the result of ShareOut (core/workers.h), for which an InputError is no failure.
 int WorkOn(const std::vector<std::filesystem::path>& cases, const std::filesystem::path& result,
            int workers, const std::function<void(size_t k)>& job);
 

@@ -41,7 +41,7 @@ struct CaseFollowUps {
 // The planned recording, which is a variant of one of the case's recordings that the hand held with
 // `hold_force` (N), as the true bar shows it: the markers, and the reading of the load cell where
 // the case has one, with noise. `number` draws the noise; `rough` as for SimulateTruth(). Throws
-// InputError where the true motion cannot be simulated.
+// SimulationFailure (trials/trial_simulation.h) where the true motion cannot be simulated.
 struct TrueRecording {
   Markers markers;
   std::optional<MeasuredReaction> reading;

@@ -59,6 +59,7 @@ TrialPrior ReadTrialPrior(const Config& item, const IntervalSuite& suite) {
   const ParameterCard& card = entry->card->parameters[index];
   prior.unit = card.dimension.unit;
   prior.log_scale = card.log_scale;
+  prior.bounds = card.bounds;
   prior.mean = item.Quantity("mean", card.dimension, card.bounds);
   prior.deviation = item.Quantity("deviation", card.dimension, kPositive);
   if (prior.log_scale && !(prior.mean > 0))
@@ -72,10 +73,22 @@ bool HasPrior(const IntervalSuite& suite, const std::string& name) {
                      [&](const TrialPrior& prior) { return prior.name == name; });
 }
 
-double Drawn(const TrialPrior& prior, uint64_t bits) {
-  const double normal = Normal(bits);
-  if (prior.log_scale) return prior.mean * std::exp(prior.deviation / prior.mean * normal);
-  return prior.mean + prior.deviation * normal;
+// The first of the draws from the prior that lies within its bounds. `number` is that of the prior
+// in its suite. Throws InputError if there is none.
+double Drawn(const TrialPrior& prior, uint64_t seed, uint64_t number) {
+  constexpr uint64_t kMostDraws = 1000;
+  for (uint64_t draw = 0; draw < kMostDraws; ++draw) {
+    const double normal = Normal(draw == 0 ? RandomBits({seed, kPriorStream, number})
+                                           : RandomBits({seed, kPriorStream, number, draw}));
+    const double value = prior.log_scale
+                             ? prior.mean * std::exp(prior.deviation / prior.mean * normal)
+                             : prior.mean + prior.deviation * normal;
+    if (prior.bounds.Contain(value)) return value;
+  }
+  throw InputError(fmt::format(
+      "the prior of {} with the mean {:g} {} and the deviation {:g} {} has hardly any probability "
+      "between its bounds",
+      prior.name, prior.mean, prior.unit, prior.deviation, prior.unit));
 }
 
 // The true values of the parameters that are drawn, by their names in a fit.
@@ -204,8 +217,7 @@ TrialCase DrawIntervalCase(const IntervalSuite& suite, int number) {
 
   std::map<std::string, double> drawn;
   for (size_t k = 0; k < suite.priors.size(); ++k)
-    drawn[suite.priors[k].name] =
-        Drawn(suite.priors[k], RandomBits({trial.seed, kPriorStream, static_cast<uint64_t>(k)}));
+    drawn[suite.priors[k].name] = Drawn(suite.priors[k], trial.seed, k);
   const auto take = [&](const std::string& name, double* value) {
     if (drawn.contains(name)) *value = drawn[name];
   };
@@ -262,11 +274,12 @@ int RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& fo
           "folder");
   }
   return WorkOn(draws, kIntervalsFile, workers, [&](size_t k) {
-    if (!std::filesystem::exists(draws[k] / kTruthFile)) {
-      const TrialCase trial = DrawIntervalCase(suite, static_cast<int>(k));
+    // The truth comes first, so that a draw that cannot be simulated is reported.
+    const TrialCase trial = DrawIntervalCase(suite, static_cast<int>(k));
+    const bool is_new = !std::filesystem::exists(draws[k] / kTruthFile);
+    if (is_new) SaveCase(trial, draws[k]);
+    if (is_new || !std::filesystem::exists(draws[k] / kExperimentFile))
       SimulateCase(trial, draws[k]);
-      SaveCase(trial, draws[k]);
-    }
     FitDraw(draws[k]);
   });
 }

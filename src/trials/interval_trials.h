@@ -2,8 +2,8 @@
 //
 // Simulation-based calibration (Talts, Betancourt, Simpson, Vehtari & Gelman, Validating Bayesian
 // inference algorithms with simulation-based calibration, arXiv:1804.06788): parameters are drawn
-// from their prior, a recording is simulated with them, and the model is fitted to it. The position
-// of the truth in the posterior of the fit,
+// from their prior within the bounds of their cards, a recording is simulated with them, and the
+// model is fitted to it. The position of the truth in the posterior of the fit,
 //   u = Φ((φ_true − φ_centre) / s),
 // with the centre and the standard deviation s that the 95 % interval implies, is distributed
 // uniformly over all draws if the intervals are right. φ is the parameter or its logarithm.
@@ -44,7 +44,9 @@ struct IntervalSuite {
 // must have a prior; the others without one are as in the sealed cases, and known.
 IntervalSuite ReadIntervalSuite(const Config& config);
 
-// Draw `number` of the suite; it depends on the suite's seed and this number alone.
+// Draw `number` of the suite; it depends on the suite's seed and this number alone. A true value
+// outside the bounds of its card, which the fit cannot reach, is drawn again. Throws InputError if
+// a prior has hardly any probability between the bounds.
 TrialCase DrawIntervalCase(const IntervalSuite& suite, int number);
 
 // A fitted parameter whose true value is known.
@@ -70,7 +72,8 @@ struct IntervalTally {
 
 struct IntervalReport {
   std::vector<IntervalTally> tallies;
-  std::vector<std::string> failed;   // draws without a usable fit, and why
+  std::vector<std::string> failed;   // draws that cannot be simulated or have no usable fit, and
+                                     // why
   std::vector<std::string> missing;  // effects that the truth has and the model lacks
 };
 

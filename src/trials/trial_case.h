@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/bounds.h"
 #include "diagnosis/nuisance.h"
 #include "fem/effect.h"
 
@@ -49,6 +50,7 @@ struct TrialPrior {
   std::string unit;
   double mean = 0, deviation = 0;
   bool log_scale = false;
+  Bounds bounds = kAnyValue;  // of the card; the truth is drawn within them, as the fit stays there
 };
 
 // A load cell that measures the force of the clamp. Its offset and its delay are drawn for each

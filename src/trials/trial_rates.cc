@@ -90,7 +90,7 @@ void CountRemoved(const FinishedTrial& finished, TrialRates* rates) {
   if (!outcome.simulated) return;
   AddSimulated(outcome.simulated->wrong_member, &rates->removed_member);
   AddSimulated(outcome.simulated->unknown, &rates->not_in_library);
-  if (outcome.simulated->unknown >= kDecidable) Add(is_unknown, &rates->unknown);
+  if (outcome.simulated->unknown >= kDecidable) Add(is_unknown, &rates->decidable_not_in_library);
 }
 
 // A statement about effects is right if they are, whatever nuisances stand beside them.
@@ -137,7 +137,8 @@ std::vector<RateLine> LinesOf(const TrialRates& rates) {
       {removed, "one of its family is named", rates.removed_member},
       {removed, "one of another family is named", rates.removed_outside},
       {removed, "not in library", rates.not_in_library},
-      {removed, "... where the simulated rules say so in " + decidable, rates.unknown}};
+      {removed, "... where the simulated rules say so in " + decidable,
+       rates.decidable_not_in_library}};
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ struct TrialRates {
   // Cases whose effect was removed from the catalogue.
   Rate removed_member, removed_outside;  // an effect of its family, of another family was named
   Rate not_in_library;                   // all such verdicts
-  Rate unknown;                          // those of the decidable cases
+  Rate decidable_not_in_library;         // those of the decidable cases
   // All cases but those with a removed effect, and those with the verdict "not in library", which
   // says that the truth is not among the hypotheses.
   std::array<ReliabilityBin, 5> reliability = {

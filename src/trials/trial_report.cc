@@ -33,21 +33,30 @@ std::string RowOf(const TrialCase& trial) {
 void Count(const TrialCase& trial, const TrialOutcome& outcome, TrialTally* tally) {
   ++tally->cases;
   ++tally->verdicts[VerdictName(outcome.verdict)];
-  const bool named = outcome.verdict == Verdict::kMissing;
+  const bool is_stated = outcome.verdict == Verdict::kMissing;
   const bool is_removed = trial.group == TrialGroup::kRemoved;
-  const bool right = named && !is_removed && trial.Hides(outcome.named[0]);
-  tally->top1 += right;
-  tally->wrong += named && !right;
+  const auto is_right = [&](const std::string& name) { return !is_removed && trial.Hides(name); };
+  const std::vector<std::string>& named = outcome.named;
+  const bool only_right = is_stated && std::all_of(named.begin(), named.end(), is_right);
+  tally->wrong += is_stated && !only_right;
   if (trial.hidden.empty() || is_removed) return;
   ++tally->nameable;
-  const std::string& truth = trial.hidden[0].type;
-  const bool second = outcome.ranked.size() > 1 &&
-                      (named || outcome.verdict == Verdict::kAmbiguous) &&
-                      (outcome.ranked[0] == truth || outcome.ranked[1] == truth);
-  const bool listed = outcome.verdict == Verdict::kAmbiguous &&
-                      std::count(outcome.named.begin(), outcome.named.end(), truth) > 0;
-  tally->top2 += right || second || listed;
-  tally->ranked_first += !outcome.ranked.empty() && outcome.ranked[0] == truth;
+  tally->pairs += trial.hidden.size() == 2;
+  const bool names_all =
+      std::all_of(trial.hidden.begin(), trial.hidden.end(), [&](const HiddenEffect& hidden) {
+        return std::find(named.begin(), named.end(), hidden.type) != named.end();
+      });
+  tally->top1 += only_right && names_all;
+  tally->in_part += only_right && !names_all;
+  const auto among_first = [&](size_t count) {
+    const auto first = outcome.ranked.begin();
+    const auto end = first + static_cast<std::ptrdiff_t>(std::min(count, outcome.ranked.size()));
+    return std::any_of(first, end, is_right);
+  };
+  const bool is_ambiguous = outcome.verdict == Verdict::kAmbiguous;
+  tally->top2 += only_right || ((is_stated || is_ambiguous) && among_first(2)) ||
+                 (is_ambiguous && std::any_of(named.begin(), named.end(), is_right));
+  tally->ranked_first += among_first(1);
   if (!outcome.has_truth) return;
   ++tally->fitted;
   tally->at_noise += outcome.error_after <= kAtNoise;
@@ -56,6 +65,16 @@ void Count(const TrialCase& trial, const TrialOutcome& outcome, TrialTally* tall
     ++tally->intervals;
     tally->covered += covered;
   }
+}
+
+// The row of the confusion matrix.
+std::string HiddenIn(const TrialCase& trial) {
+  if (trial.hidden.empty()) return "nothing";
+  std::vector<std::string> types;
+  for (const HiddenEffect& hidden : trial.hidden) types.push_back(hidden.type);
+  std::sort(types.begin(), types.end());
+  return fmt::format("{}{}", fmt::join(types, " + "),
+                     trial.group == TrialGroup::kRemoved ? " (removed)" : "");
 }
 
 std::string Share(int part, int whole) {
@@ -68,6 +87,7 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
   TrialReport report;
   std::map<std::string, TrialTally> tallies;
   std::map<std::string, std::vector<double>> before, after;
+  std::vector<double> seconds;
   std::vector<FinishedTrial> finished;
   for (const std::filesystem::path& own : CasesIn(folder)) {
     const TrialCase trial = LoadCase(own);
@@ -82,12 +102,16 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
     Count(trial, outcome, &tallies[group]);
     before[group].push_back(outcome.error_before);
     if (outcome.has_truth) after[group].push_back(outcome.error_after);
-    std::string truth = trial.hidden.empty() ? "nothing" : trial.hidden[0].type;
-    if (trial.group == TrialGroup::kRemoved) truth += " (removed)";
-    const std::string said =
-        outcome.verdict == Verdict::kMissing ? outcome.named[0] : VerdictName(outcome.verdict);
-    ++report.confusion[truth][said];
+    seconds.push_back(outcome.seconds);
+    std::map<std::string, int>& said = report.confusion[HiddenIn(trial)];
+    if (outcome.verdict == Verdict::kMissing)
+      for (const std::string& name : outcome.named) ++said[name];
+    else
+      ++said[VerdictName(outcome.verdict)];
   }
+  for (const std::filesystem::path& own : SkippedCasesIn(folder))
+    report.skipped.push_back(own.filename().string());
+  report.median_seconds = MedianOrZero(seconds);
   report.rates = RatesOf(finished);
   report.follow_ups = ReportFollowUps(folder);
   for (auto& [group, tally] : tallies) {
@@ -99,32 +123,38 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
 }
 
 std::string ReportInWords(const TrialReport& report) {
-  std::string text =
-      fmt::format("{:28} {:>5} {:>7} {:>7} {:>6} {:>10} {:>8} {:>10} {:>11} {:>8} {:>7}  {}\n",
-                  "group", "cases", "correct", "top two", "wrong", "ranked 1st", "at noise",
-                  "size ±15 %", "in interval", "σ before", "σ after", "verdicts");
+  std::string text = fmt::format(
+      "{:28} {:>5} {:>7} {:>7} {:>7} {:>6} {:>10} {:>8} {:>10} {:>11} {:>8} {:>7}  {}\n", "group",
+      "cases", "correct", "in part", "top two", "wrong", "ranked 1st", "at noise", "size ±15 %",
+      "in interval", "σ before", "σ after", "verdicts");
   for (const TrialTally& tally : report.tallies) {
     std::vector<std::string> verdicts;
     for (const auto& [name, count] : tally.verdicts)
       verdicts.push_back(fmt::format("{} {}", count, name));
     text += fmt::format(
-        "{:28} {:>5} {:>7} {:>7} {:>6} {:>10} {:>8} {:>10} {:>11} {:>8.2f} {:>7}  {}\n",
+        "{:28} {:>5} {:>7} {:>7} {:>7} {:>6} {:>10} {:>8} {:>10} {:>11} {:>8.2f} {:>7}  {}\n",
         tally.group, tally.cases, Share(tally.top1, tally.nameable),
-        Share(tally.top2, tally.nameable), Share(tally.wrong, tally.cases),
-        Share(tally.ranked_first, tally.nameable), Share(tally.at_noise, tally.fitted),
-        Share(tally.within_15, tally.fitted), Share(tally.covered, tally.intervals),
-        tally.median_before, tally.fitted > 0 ? fmt::format("{:.2f}", tally.median_after) : "-",
+        Share(tally.in_part, tally.pairs), Share(tally.top2, tally.nameable),
+        Share(tally.wrong, tally.cases), Share(tally.ranked_first, tally.nameable),
+        Share(tally.at_noise, tally.fitted), Share(tally.within_15, tally.fitted),
+        Share(tally.covered, tally.intervals), tally.median_before,
+        tally.fitted > 0 ? fmt::format("{:.2f}", tally.median_after) : "-",
         fmt::join(verdicts, ", "));
   }
   text += "\nhidden effect: verdicts, or the effects named as missing\n";
   for (const auto& [truth, said] : report.confusion) {
     std::vector<std::string> parts;
     for (const auto& [name, count] : said) parts.push_back(fmt::format("{} {}", count, name));
-    text += fmt::format("  {:32} {}\n", truth, fmt::join(parts, ", "));
+    text += fmt::format("  {:44} {}\n", truth, fmt::join(parts, ", "));
   }
   text += "\n" + RatesInWords(report.rates) + FollowUpsInWords(report.follow_ups);
+  text += fmt::format("\nmedian time for the fit and the diagnosis of a case: {:.0f} s\n",
+                      report.median_seconds);
   if (!report.unfinished.empty())
-    text += fmt::format("\n{} cases without an outcome\n", report.unfinished.size());
+    text += fmt::format("cases without an outcome: {}\n", report.unfinished.size());
+  if (!report.skipped.empty())
+    text += fmt::format("cases that could not be made: {}; {} in their folders has the reasons\n",
+                        report.skipped.size(), kSkippedFile);
   return text;
 }
 
@@ -133,7 +163,10 @@ void SaveTrialReport(const TrialReport& report, const std::filesystem::path& fol
   for (const TrialTally& tally : report.tallies)
     tallies.push_back({{"group", tally.group},
                        {"cases", tally.cases},
+                       {"nameable", tally.nameable},
+                       {"pairs", tally.pairs},
                        {"top1", tally.top1},
+                       {"in_part", tally.in_part},
                        {"top2", tally.top2},
                        {"wrong", tally.wrong},
                        {"ranked_first", tally.ranked_first},
@@ -148,7 +181,9 @@ void SaveTrialReport(const TrialReport& report, const std::filesystem::path& fol
   nlohmann::json all = {{"schema_version", 1},
                         {"tallies", tallies},
                         {"confusion", report.confusion},
-                        {"unfinished", report.unfinished}};
+                        {"median_seconds", report.median_seconds},
+                        {"unfinished", report.unfinished},
+                        {"skipped", report.skipped}};
   all.update(RatesToJson(report.rates));
   all["follow_ups"] = FollowUpsToJson(report.follow_ups);
   WriteFileAtomically(folder / "report.json", all.dump(2) + "\n");

@@ -7,14 +7,13 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "calibration/adaptive_time_step.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/json_file.h"
-#include "core/json_number.h"
 #include "diagnosis/decision.h"
 #include "diagnosis/decision_store.h"
 #include "diagnosis/diagnosis.h"
@@ -27,7 +26,7 @@
 namespace lacuna {
 namespace {
 
-constexpr int kSchemaVersion = 4;  // of outcome.json
+constexpr int kSchemaVersion = 5;  // of outcome.json
 // The folder with the input of the decision with the hidden effect among the hypotheses, of a case
 // in which the diagnosis does not know it.
 constexpr char kWithRemovedFolder[] = "decision_with_removed";
@@ -94,15 +93,6 @@ std::optional<RecordedPower> Simulated(const TrialCase& trial, const DecisionInp
       .value_or(invisible);
 }
 
-void SetDecided(const DecisionRecord& decision, const DecisionInput& input, TrialOutcome* outcome) {
-  outcome->probabilities = decision.probabilities;
-  outcome->p_adequate = decision.adequacy.p;
-  outcome->p_unknown_force = decision.adequacy.p_unknown_force;
-  outcome->p_further = decision.adequacy.p_further;
-  outcome->left_share = decision.adequacy.left_share;
-  outcome->model_error = input.baseline.model_error;
-}
-
 // The same study with the time step that the diagnosis has chosen.
 DecisionInput InputWithRemoved(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                                double time_step) {
@@ -113,6 +103,21 @@ DecisionInput InputWithRemoved(const CalibrationProblem& problem, const Eigen::V
 }
 
 }  // namespace
+
+std::vector<std::string> RankedTypes(const std::vector<RankedEffect>& effects) {
+  const auto rank = [](const RankedEffect& effect) {
+    const bool is_refitted = effect.HasUsableRefit();
+    return std::pair(is_refitted, is_refitted ? effect.evidence : effect.scored.score.evidence);
+  };
+  std::vector<const RankedEffect*> order;
+  for (const RankedEffect& effect : effects) order.push_back(&effect);
+  std::stable_sort(order.begin(), order.end(), [&](const RankedEffect* a, const RankedEffect* b) {
+    return rank(*a) > rank(*b);
+  });
+  std::vector<std::string> types;
+  for (const RankedEffect* effect : order) types.push_back(effect->scored.candidate.type);
+  return types;
+}
 
 TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem::path& output) {
   const auto began = std::chrono::steady_clock::now();
@@ -134,29 +139,13 @@ TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem:
   TrialOutcome outcome;
   outcome.verdict = diagnosis.verdict;
   outcome.named = diagnosis.effects;
-  outcome.chance = diagnosis.decision.chance;
-  SetDecided(diagnosis.decision, diagnosis.decision_input, &outcome);
-  outcome.left = diagnosis.best_rms_over_sigma;
-  std::vector<std::pair<double, std::string>> order;
-  for (const RankedEffect& effect : diagnosis.ranking) {
-    // Effects that were refitted rank before those that have a first-order score only.
-    order.emplace_back(effect.HasUsableRefit() ? effect.evidence
-                                               : std::min(-1.0, effect.scored.score.evidence - 100),
-                       effect.scored.candidate.type);
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
-  for (const auto& [evidence, type] : order) outcome.ranked.push_back(type);
-  if (!order.empty()) outcome.evidence = order[0].first;
-  if (order.size() > 1) outcome.second_evidence = order[1].first;
+  outcome.probabilities = diagnosis.decision.probabilities;
+  outcome.ranked = RankedTypes(diagnosis.ranking);
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 
   const TrialCase trial = LoadCase(folder);
-  const double unit = EstimatedOverTrueNoise(trial, problem);
-  outcome.error_before = diagnosis.errors.without_nuisances * unit;
-  if (!outcome.named.empty())
-    if (const RankedEffect* best = Find(diagnosis, outcome.named[0]))
-      outcome.error_best = best->errors.without_nuisances * unit;
+  outcome.error_before =
+      diagnosis.errors.without_nuisances * EstimatedOverTrueNoise(trial, problem);
   if (!trial.hidden.empty()) Compare(trial, problem, calibration.parameters, diagnosis, &outcome);
   if (trial.group == TrialGroup::kRemoved)
     SaveDecisionInput(InputWithRemoved(problem, calibration.parameters, diagnosis.time_step),
@@ -170,20 +159,10 @@ void SaveTrialOutcome(const TrialOutcome& outcome, const std::filesystem::path& 
       {"schema_version", kSchemaVersion},
       {"verdict", VerdictName(outcome.verdict)},
       {"probabilities", ProbabilitiesToJson(outcome.probabilities)},
-      {"p_adequate", outcome.p_adequate},
-      {"p_unknown_force", outcome.p_unknown_force},
-      {"p_further", outcome.p_further},
-      {"left_share", NumberOrNull(outcome.left_share)},
-      {"model_error", NumberOrNull(outcome.model_error)},
       {"simulated", outcome.simulated ? PowerToJson(*outcome.simulated) : nlohmann::json()},
       {"named", outcome.named},
       {"ranked", outcome.ranked},
       {"error_before", outcome.error_before},
-      {"error_best", outcome.error_best},
-      {"evidence", outcome.evidence},
-      {"second_evidence", outcome.second_evidence},
-      {"chance", outcome.chance},
-      {"left", outcome.left},
       {"has_truth", outcome.has_truth},
       {"error_after", outcome.error_after},
       {"relative_error", outcome.relative_error},
@@ -202,25 +181,11 @@ TrialOutcome LoadTrialOutcome(const std::filesystem::path& folder) {
     TrialOutcome outcome;
     outcome.verdict = VerdictFromName(json.at("verdict"));
     outcome.named = json.at("named");
-    if (version >= 2) {  // outcomes of before have no probabilities
-      outcome.probabilities = ProbabilitiesFromJson(json.at("probabilities"));
-      outcome.p_adequate = json.at("p_adequate");
-    }
-    if (version >= 4) {
-      outcome.p_unknown_force = json.at("p_unknown_force");
-      outcome.p_further = json.at("p_further");
-      outcome.left_share = NumberOr(json.at("left_share"), std::numeric_limits<double>::infinity());
-      outcome.model_error = NumberOr(json.at("model_error"));
-    }
+    if (version >= 2) outcome.probabilities = ProbabilitiesFromJson(json.at("probabilities"));
     if (version >= 3 && !json.at("simulated").is_null())
       outcome.simulated = PowerFromJson(json.at("simulated"));
     outcome.ranked = json.at("ranked");
     outcome.error_before = json.at("error_before");
-    outcome.error_best = json.at("error_best");
-    outcome.evidence = json.at("evidence");
-    outcome.second_evidence = json.at("second_evidence");
-    outcome.chance = json.at("chance");
-    outcome.left = json.at("left");
     outcome.has_truth = json.at("has_truth");
     outcome.error_after = json.at("error_after");
     outcome.relative_error = json.at("relative_error");
@@ -239,7 +204,7 @@ bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output
   TrialOutcome outcome = LoadTrialOutcome(output);
   outcome.verdict = decision.verdict;
   outcome.named = decision.names;
-  SetDecided(decision.record, input, &outcome);
+  outcome.probabilities = decision.record.probabilities;
   outcome.simulated = Simulated(trial, input, output);
   SaveTrialOutcome(outcome, output);
   return true;

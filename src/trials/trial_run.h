@@ -3,11 +3,11 @@
 #define LACUNA_TRIALS_TRIAL_RUN_H_
 
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "diagnosis/diagnosis_result.h"
 #include "record/decision_record.h"
 #include "record/verdict.h"
 #include "trials/trial_case.h"
@@ -19,21 +19,11 @@ namespace lacuna {
 struct TrialOutcome {
   Verdict verdict = Verdict::kNoPower;
   std::vector<std::string> named;   // effects and nuisances of the verdict, the best one first
-  std::vector<std::string> ranked;  // all effects by evidence, that of the refit if there is one
+  std::vector<std::string> ranked;  // all effects, as RankedTypes() orders them
   double error_before = 0;          // held-out, of the model without any of them
-  double error_best = 0;            // held-out, with the first one named; 0: none is named
-  // Evidence of the first two ranked effects, and the one that a twentieth of the controls without
-  // an effect exceeds; `left`: the remaining rms residual over the noise. All as the Diagnosis has
-  // them.
-  double evidence = 0, second_evidence = 0, chance = 0, left = 0;
-  // The posterior of all hypotheses, the most probable one first, and the test of what the first
-  // one leaves (RecordedAdequacy); empty and 1 for outcomes of older versions.
+  // The posterior of all hypotheses, the most probable one first; empty for outcomes of older
+  // versions.
   std::vector<HypothesisProbability> probabilities;
-  double p_adequate = 1, p_unknown_force = 1, p_further = 1;
-  // NaN for outcomes of older versions; infinite where nothing was explained.
-  double left_share = std::numeric_limits<double>::quiet_NaN();
-  // HypothesisSpace::model_error of the fitted model; NaN for outcomes of older versions.
-  double model_error = std::numeric_limits<double>::quiet_NaN();
   // How often the rules of the decision give each answer, to first order, in recordings that are
   // simulated with the hidden effect. Only of cases with one hidden effect.
   std::optional<RecordedPower> simulated;
@@ -47,6 +37,10 @@ struct TrialOutcome {
   std::vector<char> covered;  // for each amplitude: whether the 95 % interval contains the truth
   double seconds = 0;         // wall time of fit and diagnosis
 };
+
+// The types of the effects of a diagnosis: those with a usable refit by its evidence, then the
+// others by their first-order evidence.
+std::vector<std::string> RankedTypes(const std::vector<RankedEffect>& effects);
 
 // Fits and diagnoses the case in `folder` according to experiment.yaml in `output`, and keeps there
 // diagnosis.json and what it was decided from. `output` is `folder` unless a further recording is

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "core/atomic_file.h"
-#include "core/error.h"
 #include "effects/attached_mass.h"
 #include "effects/catalogue.h"
 #include "effects/effect_text.h"
@@ -99,7 +98,7 @@ TrueMotion SimulateTruth(const TrialCase& trial, const TrialProcedure& procedure
                       .max_volume = rough ? trial.element_volume : trial.true_element_volume,
                       .preserve_surface = false,
                       .order = 2});
-  if (!mesh.IsUsable()) throw InputError(trial.name + ": " + mesh.message);
+  if (!mesh.IsUsable()) throw SimulationFailure(trial.name + ": " + mesh.message);
   Model model;
   model.body = std::make_shared<const Body>(MakeBody(mesh.mesh, kTrialDensity));
   model.effects = TrueEffects(trial);
@@ -138,7 +137,7 @@ TrueMotion SimulateTruth(const TrialCase& trial, const TrialProcedure& procedure
           motion.forces.col(static_cast<Eigen::Index>(visit.frame)) = state.reaction;
       });
   if (!summary.IsUsable())
-    throw InputError(
+    throw SimulationFailure(
         fmt::format("{}: the truth cannot be simulated: {}", trial.name, summary.message));
   return motion;
 }

@@ -13,13 +13,13 @@
 #include "calibration/linear_misfit.h"
 #include "core/atomic_file.h"
 #include "core/claim.h"
-#include "core/error.h"
 #include "core/workers.h"
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
+#include "effects/neo_hookean.h"
 #include "effects/stiffness_damping.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
@@ -60,7 +60,7 @@ Eigen::VectorXd ChangeBy(const HiddenEffect& hidden, const CalibrationProblem& p
   const PredictionStudy study = WithCandidate(problem.WithEstimatedNoise(), candidate);
   const LinearisedMisfit with =
       CalibrationProblem(study, problem.body()->mesh).Linearise(values, false, {}, &misfit);
-  if (!with.usable) throw InputError(hidden.type + ": " + with.message);
+  if (!with.usable) throw SimulationFailure(hidden.type + ": " + with.message);
   return with.residual - misfit.residual;
 }
 
@@ -132,7 +132,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   const Eigen::VectorXd values = TrueValues(trial, without, study, problem);
   LinearisedWithGrips linearised = LineariseWithGrips(problem, values, SizeDirections(hidden));
   LinearisedMisfit& misfit = linearised.misfit;
-  if (!misfit.usable) throw InputError(trial.name + ": " + misfit.message);
+  if (!misfit.usable) throw SimulationFailure(trial.name + ": " + misfit.message);
   // The noise of a depth camera is that along its rays and stays as estimated.
   if (!trial.is_scanned)
     for (LinearisedMisfit::Part& part : misfit.parts)
@@ -180,8 +180,8 @@ void SimulateAndSeal(const TrialCase& trial, const std::filesystem::path& folder
   WriteFileAtomically(folder / kWithoutFile, types);
 }
 
-// Determines the sizes of the hidden effects and simulates the case. Returns the reason of a
-// failure, empty on success.
+// Determines the sizes of the hidden effects and simulates the case. Returns why the case cannot be
+// made as it was drawn, empty on success. Throws InputError where another draw would not help.
 std::string SizeAndSimulate(TrialCase* trial, const std::filesystem::path& folder) {
   try {
     for (HiddenEffect& hidden : trial->hidden) {
@@ -192,18 +192,36 @@ std::string SizeAndSimulate(TrialCase* trial, const std::filesystem::path& folde
         return fmt::format("{} would have to be {:g} times its unit", hidden.type, size);
     }
     SimulateAndSeal(*trial, folder);
-  } catch (const InputError& problem) {
+  } catch (const SimulationFailure& problem) {
     return problem.what();
   }
+  return "";
+}
+
+// Why no case can hide the effect of this type; empty if one can.
+std::string WhyNotHidden(const std::string& type) {
+  const CatalogueEntry* entry = FindEntry(type);
+  if (entry == nullptr) return fmt::format("no effect is called \"{}\"", type);
+  if (entry->make == nullptr)
+    return fmt::format("\"{}\" cannot be drawn, because numbers alone do not describe it", type);
+  if (type == NeoHookeanCard().type)
+    return fmt::format("\"{}\" is the elasticity law of every model", type);
   return "";
 }
 
 }  // namespace
 
 std::vector<std::string> ReadEffectTypes(const Config& config, const std::string& key) {
-  std::vector<std::string> types = config.Texts(key);
-  for (const std::string& type : types)
-    if (FindEntry(type) == nullptr) config.Fail(key, "no effect is called \"" + type + "\"");
+  const std::vector<std::string> types = config.Texts(key);
+  for (size_t k = 0; k < types.size(); ++k) {
+    const std::string why = WhyNotHidden(types[k]);
+    if (why.empty()) continue;
+    std::vector<std::string> possible;
+    for (const CatalogueEntry& entry : Catalogue())
+      if (WhyNotHidden(entry.card->type).empty()) possible.push_back(entry.card->type);
+    config.FailAtItem(key, k,
+                      fmt::format("{}; expected one of: {}", why, fmt::join(possible, ", ")));
+  }
   return types;
 }
 
@@ -223,6 +241,11 @@ TrialSuite ReadTrialSuite(const Config& config) {
   suite.removed = ReadEffectTypes(config, "removed");
   suite.factors = config.Integers("factors", 1);
   suite.recordings = config.Integers("recordings", 1);
+  for (size_t k = 0; k < suite.recordings.size(); ++k)
+    if (suite.recordings[k] > 2) config.FailAtItem("recordings", k, "a case has 1 or 2 recordings");
+  if (suite.pairs > 0 && suite.effects.size() < 2)
+    config.Fail("pairs",
+                "two effects are hidden at once, so that `effects` must list at least two");
   if (suite.factors.empty()) suite.factors = {1, 2, 4};
   if (suite.recordings.empty()) suite.recordings = {1, 2};
   config.RefuseUnknownKeys();
@@ -277,7 +300,7 @@ std::vector<TrialCase> CasesOf(const TrialSuite& suite) {
 
 bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
   const std::filesystem::path own = folder / trial.name;
-  if (std::filesystem::exists(own / "skipped.txt")) return false;
+  if (std::filesystem::exists(own / kSkippedFile)) return false;
   MakeFolder(own);
   if (std::filesystem::exists(own / kTruthFile)) {
     // If only the truth was kept, the recordings are simulated again.
@@ -290,7 +313,7 @@ bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
     if (reason.empty()) break;
     reasons += reason + "\n";
     if (trial.hidden.empty() || attempt == kMostAttempts) {
-      WriteFileAtomically(own / "skipped.txt", reasons);
+      WriteFileAtomically(own / kSkippedFile, reasons);
       return false;
     }
     trial = DrawnAgain(trial);
@@ -302,10 +325,15 @@ bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
 int MakeTrials(const TrialSuite& suite, const std::filesystem::path& folder, int workers) {
   const std::vector<TrialCase> cases = CasesOf(suite);
   MakeFolder(folder);
-  for (const TrialCase& trial : cases) MakeFolder(folder / trial.name);
-  return ShareOut(cases.size(), {.workers = workers}, [&](size_t k) {
-    const Claim claim(folder / cases[k].name / kClaimFile);
-    if (claim.holds()) MakeCase(cases[k], folder);
+  std::vector<std::filesystem::path> folders;
+  for (const TrialCase& trial : cases) {
+    folders.push_back(folder / trial.name);
+    MakeFolder(folders.back());
+  }
+  const std::vector<size_t> order = WorkOrder(folders);
+  return ShareOut(cases.size(), {.workers = workers}, [&](size_t at) {
+    const Claim claim(folders[order[at]] / kClaimFile);
+    if (claim.holds()) MakeCase(cases[order[at]], folder);
   });
 }
 

@@ -27,11 +27,12 @@ struct TrialSuite {
   // those of a suite without this key.
   double load_cells = 0;
 };
-// The types of effects listed under the key; none if it is absent. Throws InputError for an effect
-// that the catalogue does not have.
+// The types of effects listed under the key; none if it is absent. Throws InputError, which
+// lists the possible types, for an effect that cannot be hidden: one that the catalogue does not
+// have, one that numbers alone do not describe, and the law of every model.
 std::vector<std::string> ReadEffectTypes(const Config& config, const std::string& key);
 
-// Throws InputError at the key that is wrong; also for an effect that the catalogue does not have.
+// Throws InputError at the key that is wrong.
 TrialSuite ReadTrialSuite(const Config& config);
 
 // The cases of a suite with the types and factors of their hidden effects, whose sizes are not
@@ -41,12 +42,14 @@ std::vector<TrialCase> CasesOf(const TrialSuite& suite);
 // Makes a case in <folder>/<case>: determines the sizes of its hidden effects, simulates the
 // recordings and writes truth.json last. An existing case is kept; if only its truth.json exists,
 // its recordings are simulated again as they were. If a detectable effect would be implausibly
-// large the case is drawn again; after eight draws it is abandoned (skipped.txt) and false is
-// returned.
+// large, or the truth cannot be simulated, a case with hidden effects is drawn again, up to eight
+// draws in all. Then, and for a case without hidden effects at once, it is abandoned: skipped.txt
+// has the reasons, and false is returned. Throws InputError if a file cannot be read or written.
 bool MakeCase(TrialCase trial, const std::filesystem::path& folder);
 
 // Makes all cases of a suite that do not exist yet, in `workers` processes. Returns the result of
-// ShareOut (core/workers.h).
+// ShareOut (core/workers.h), for which an abandoned case is no failure, and an InputError of
+// MakeCase is one.
 int MakeTrials(const TrialSuite& suite, const std::filesystem::path& folder, int workers);
 
 }  // namespace lacuna

@@ -1,11 +1,15 @@
 #include "trials/case_files.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "core/claim.h"
 #include "core/error.h"
@@ -20,6 +24,26 @@ namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
+
+// Of 20 controls followed by 20 cases with an effect, the first ten in the order of work are
+// neither all of one kind nor others when the suite stands in another folder.
+TEST(WorkOn, TakesTheCasesInAnOrderThatIsAFairSample) {
+  std::vector<fs::path> cases, moved;
+  for (int k = 0; k < 40; ++k) {
+    const std::string name = fmt::format("{:04}-{}", k, k < 20 ? "control" : "one_effect");
+    cases.push_back(fs::path("suite") / name);
+    moved.push_back(fs::path("elsewhere") / name);
+  }
+  const std::vector<size_t> order = WorkOrder(cases);
+  EXPECT_EQ(WorkOrder(moved), order);
+  std::vector<size_t> sorted = order;
+  std::sort(sorted.begin(), sorted.end());
+  for (size_t k = 0; k < 40; ++k) EXPECT_EQ(sorted.at(k), k);
+  const auto controls =
+      std::count_if(order.begin(), order.begin() + 10, [](size_t k) { return k < 20; });
+  EXPECT_GE(controls, 2);
+  EXPECT_LE(controls, 8);
+}
 
 TEST(WorkOn, KeepsTheReasonOfAFailureUntilThereIsAResult) {
   const TemporaryFolder folder;

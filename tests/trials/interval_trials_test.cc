@@ -16,6 +16,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 IntervalSuite Suite(const std::string& rest) {
   return ReadIntervalSuite(
@@ -51,6 +52,25 @@ TEST(IntervalSuite, DrawsTheTruthFromThePriors) {
   EXPECT_LT((squares / kDraws - 1).abs().maxCoeff(), 4 * std::sqrt(2.0 / kDraws));
   EXPECT_EQ(DrawIntervalCase(suite, 4).modelled[0].parameters,
             DrawIntervalCase(suite, 4).modelled[0].parameters);
+}
+
+// Half of the draws of a prior at the bound of its parameter lie beyond it, where the fit cannot
+// follow.
+TEST(IntervalSuite, DrawsTheTruthWithinTheBoundsOfTheFit) {
+  const IntervalSuite suite = Suite(
+      "missing: [drag]\npriors:\n"
+      "  - {name: poisson_ratio, mean: 0.499, deviation: 0.05}\n"
+      "  - {name: drag.coefficient, mean: 0 kg/m^3, deviation: 10 kg/m^3}\n");
+  for (int k = 0; k < 50; ++k) {
+    const TrialCase trial = DrawIntervalCase(suite, k);
+    EXPECT_LT(trial.poisson_ratio, 0.5);
+    EXPECT_GE(trial.hidden.at(0).parameters.at("coefficient"), 0);
+    EXPECT_EQ(TextOfCase(DrawIntervalCase(suite, k)), TextOfCase(trial));
+  }
+  const IntervalSuite wide =
+      Suite("priors: [{name: poisson_ratio, mean: 0.4, deviation: 1000000000}]\n");
+  EXPECT_THAT([&] { DrawIntervalCase(wide, 0); },
+              ThrowsMessage<InputError>(HasSubstr("the prior of poisson_ratio")));
 }
 
 std::string Refusal(const std::string& rest) {
@@ -148,6 +168,21 @@ TEST(IntervalTrials, NamesTheDrawsWithoutAFit) {
   ASSERT_EQ(report.failed.size(), 1u);
   EXPECT_EQ(report.failed[0], "0001: an element is inverted");
   EXPECT_THAT(IntervalReportInWords(report), HasSubstr("no fit: 0001: an element is inverted"));
+}
+
+// With elements smaller than a nanometre, the truth cannot be meshed.
+TEST(IntervalTrials, NamesTheDrawsWhoseTruthCannotBeSimulated) {
+  const TemporaryFolder folder;
+  IntervalSuite suite = Suite("element_volume: 1e-18 mm^3\n");
+  suite.draws = 2;
+  EXPECT_EQ(RunIntervalSuite(suite, folder.Path(), 2), 0);
+  const IntervalReport report = ReportIntervals(folder.Path());
+  EXPECT_TRUE(report.tallies.empty());
+  ASSERT_EQ(report.failed.size(), 2u);
+  EXPECT_THAT(report.failed[1], AllOf(HasSubstr("0001: "), HasSubstr("tetrahedra")));
+  // Another suite must not continue with these draws.
+  suite.seed = 4;
+  EXPECT_THROW(RunIntervalSuite(suite, folder.Path(), 2), InputError);
 }
 
 }  // namespace

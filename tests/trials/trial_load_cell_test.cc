@@ -153,8 +153,17 @@ TEST(TrialLoadCells, AreCountedInTheDetectableSizeOfAHiddenEffect) {
   const std::filesystem::path own = folder / cases[0].name;
   const TrialCase sealed = LoadCase(own);
   ASSERT_TRUE(sealed.load_cell.has_value());
-  EXPECT_GT(sealed.hidden.at(0).parameters.at("coefficient"), 0.1);  // kg/m³; air has about 1
+  const double size = sealed.hidden.at(0).parameters.at("coefficient");
+  EXPECT_GT(size, 0.1);  // kg/m³; air has about 1
   EXPECT_THAT(FileContent(own / "recording_1/recording.yaml"), HasSubstr("measured_force"));
+  // Without the force, the same effect in the same bar must be larger to be as visible.
+  TrialCase blind = cases[0];
+  blind.name = "blind";
+  blind.load_cell.reset();
+  ASSERT_TRUE(MakeCase(blind, folder.Path()));
+  const TrialCase without = LoadCase(folder / blind.name);
+  ASSERT_EQ(without.seed, sealed.seed) << "one of the two cases was drawn again";
+  EXPECT_GT(without.hidden.at(0).parameters.at("coefficient"), size);
 }
 
 }  // namespace

@@ -117,16 +117,6 @@ TEST(FollowUps, TheTrueBarFollowsThePlan) {
     EXPECT_THAT(names, Contains(name));
 }
 
-TEST(TrialSuite, RefusesAnUnknownEffect) {
-  try {
-    ReadTrialSuite(
-        Config::Parse("schema_version: 1\nname: x\nseed: 1\neffects: [levity]\n", "x.yaml"));
-    FAIL() << "nothing was refused";
-  } catch (const InputError& problem) {
-    EXPECT_THAT(problem.what(), HasSubstr("levity"));
-  }
-}
-
 TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
   const TemporaryFolder folder;
   TrialSuite suite = SmallSuite();
@@ -151,8 +141,6 @@ TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
   const TrialOutcome outcome = LoadTrialOutcome(own);
   ASSERT_TRUE(outcome.simulated);
   EXPECT_GT(outcome.simulated->named + outcome.simulated->open, 0.8);
-  EXPECT_TRUE(std::isfinite(outcome.left_share));  // drag has explained something
-  EXPECT_GT(outcome.model_error, 0);
   ASSERT_FALSE(outcome.ranked.empty());
   // Drag and mass damping are look-alikes: drag is first or second in the ranking.
   EXPECT_TRUE(outcome.ranked[0] == "drag" || outcome.ranked[1] == "drag");
@@ -169,6 +157,21 @@ TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
   EXPECT_EQ(report.tallies[0].cases, 1);
   EXPECT_EQ(report.tallies[0].fitted, 1);
   EXPECT_TRUE(report.unfinished.empty());
+}
+
+// Another draw would not help where a file cannot be written.
+TEST(Trials, AreNotDrawnAgainBecauseAFileCannotBeWritten) {
+  const TemporaryFolder folder;
+  TrialSuite suite = SmallSuite();
+  suite.controls = suite.hard_controls = 0;
+  suite.removed.clear();
+  const TrialCase trial = CasesOf(suite).at(0);
+  const std::filesystem::path own = folder / trial.name;
+  MakeFolder(own);
+  WriteFileAtomically(own / "recording_1", "stands where a folder should be");
+  EXPECT_THROW(MakeCase(trial, folder.Path()), InputError);
+  EXPECT_FALSE(std::filesystem::exists(own / "skipped.txt"));
+  EXPECT_FALSE(std::filesystem::exists(own / "truth.json"));
 }
 
 TEST(TrialRates, CountsDecidableCasesAndReliability) {
@@ -220,8 +223,8 @@ TEST(TrialRates, CountsDecidableCasesAndReliability) {
   EXPECT_NEAR(rates.removed_member.simulated, 0.04, 1e-12);
   EXPECT_NEAR(rates.not_in_library.simulated, 1.9, 1e-12);
   EXPECT_EQ(rates.not_in_library.simulated_cases, 2);
-  EXPECT_EQ(rates.unknown.part, 1);
-  EXPECT_EQ(rates.unknown.whole, 2);
+  EXPECT_EQ(rates.decidable_not_in_library.part, 1);
+  EXPECT_EQ(rates.decidable_not_in_library.whole, 2);
   EXPECT_EQ(rates.not_in_library.part, 1);
   EXPECT_EQ(rates.removed_outside.part, 1);
   EXPECT_EQ(rates.named_in_hard_controls.part, 0);
