@@ -18,14 +18,6 @@ using Measure = Law::Measure;
 const char* const kVariableNames[Law::kVariables] = {"x",  "y",  "z",  "X",  "Y", "Z",  "ux", "uy",
                                                      "uz", "vx", "vy", "vz", "t", "nx", "ny", "nz"};
 
-// A quantity of this dimension; 0 needs no unit.
-double ReadLike(const Config& config, const std::string& key, const Dimension& dimension,
-                const Bounds& bounds) {
-  const MeasuredQuantity any = config.AnyQuantity(key);
-  if (any.value == 0 && any.dimension.SameAs(kDimensionless)) return 0;
-  return config.Quantity(key, dimension, bounds);
-}
-
 // `{value: 3 N/kg, plausible: [-10 N/kg, 10 N/kg], null_value: 0, min: …, max: …, log_scale: false,
 // setting: false, meaning: …}`
 ParameterCard ReadParameterCard(const Config& config, const std::string& name, double* value) {
@@ -35,8 +27,8 @@ ParameterCard ReadParameterCard(const Config& config, const std::string& name, d
   card.dimension = config.AnyQuantity("value").dimension;
   card.setting = config.Flag("setting", false);
   card.log_scale = config.Flag("log_scale", false);
-  if (config.Has("min")) card.bounds.min = ReadLike(config, "min", card.dimension, kAnyValue);
-  if (config.Has("max")) card.bounds.max = ReadLike(config, "max", card.dimension, kAnyValue);
+  if (config.Has("min")) card.bounds.min = config.Quantity("min", card.dimension, kAnyValue);
+  if (config.Has("max")) card.bounds.max = config.Quantity("max", card.dimension, kAnyValue);
   if (!(card.bounds.min < card.bounds.max)) config.Fail("max", "expected a value above min");
   if (card.log_scale && card.bounds.min <= 0) {
     card.bounds.min = 0;
@@ -45,7 +37,7 @@ ParameterCard ReadParameterCard(const Config& config, const std::string& name, d
   *value = config.Quantity("value", card.dimension, card.bounds);
   card.default_value = *value;
   card.null_value = config.Has("null_value")
-                        ? ReadLike(config, "null_value", card.dimension, kAnyValue)
+                        ? config.Quantity("null_value", card.dimension, kAnyValue)
                         : kNoNullValue;
   const std::vector<double> plausible = config.Quantities("plausible", card.dimension, card.bounds);
   if (plausible.size() == 2 && plausible[0] < plausible[1]) {
@@ -63,8 +55,6 @@ ParameterCard ReadParameterCard(const Config& config, const std::string& name, d
                             "fitted, needs none",
                             unit.empty() ? "" : " " + unit));
   }
-  if (card.plausible_min < card.bounds.min || card.plausible_max > card.bounds.max)
-    config.Fail("plausible", "reaches beyond the bounds min and max");
   if (card.log_scale && card.plausible_min <= 0)
     config.Fail("plausible", "expected values > 0, because the scale is logarithmic");
   return card;

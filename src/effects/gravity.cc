@@ -98,6 +98,7 @@ Eigen::VectorXd ReadAcceleration(const EffectCard&, const Config& config, const 
 }  // namespace
 
 const EffectCard& GravityCard() { return GravityEffect::TheCard(); }
+bool IsGravity(const Effect& effect) { return &effect.Card() == &GravityCard(); }
 
 std::shared_ptr<const Effect> MakeGravity(const Eigen::Vector3d& acceleration) {
   return std::make_shared<GravityEffect>(acceleration);
@@ -106,7 +107,7 @@ std::shared_ptr<const Effect> MakeGravity(const Eigen::Vector3d& acceleration) {
 std::optional<Eigen::Vector3d> GravityOf(
     const std::vector<std::shared_ptr<const Effect>>& effects) {
   for (const auto& effect : effects)
-    if (&effect->Card() == &GravityCard()) return effect->Parameters().head<3>();
+    if (IsGravity(*effect)) return effect->Parameters().head<3>();
   return std::nullopt;
 }
 

@@ -16,6 +16,7 @@
 namespace lacuna {
 
 const EffectCard& GravityCard();
+bool IsGravity(const Effect& effect);
 
 // `acceleration`: g, m/s².
 std::shared_ptr<const Effect> MakeGravity(const Eigen::Vector3d& acceleration);

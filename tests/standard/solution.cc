@@ -92,7 +92,7 @@ std::vector<Grip> MakeGrips(const Problem& problem, const MappedBlock& block) {
                      support.axes,
                      support.Moves()});
   }
-  const std::vector<Eigen::VectorXi> held = NodesOfParts(parts, block.mesh.nodes);
+  const std::vector<Eigen::VectorXi> held = NodesOfParts(parts, block.mesh);
   std::vector<Grip> grips;
   for (size_t k = 0; k < held.size(); ++k) {
     const ProblemSupport& support = problem.supports[k];

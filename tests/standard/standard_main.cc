@@ -51,10 +51,6 @@ int Run(int argc, char** argv) {
     }
     SolvedProblem& entry = solved.emplace_back(SolvedProblem{problem, {}});
     const int count = quick ? problem.quick : static_cast<int>(problem.meshes.size());
-    if (count == 0) {
-      solved.pop_back();
-      continue;
-    }
     double seconds = 0;
     for (const int order : problem.orders) {
       entry.studies.push_back(Refine(problem, order, count));

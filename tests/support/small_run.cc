@@ -68,8 +68,11 @@ MotionRecord SmallMotion() {
 void WriteSmallFit(const std::filesystem::path& folder, const SmallRun& run,
                    const CalibrationRecord& record) {
   RunDirectory directory(folder);
+  nlohmann::json effects = nlohmann::json::array();
+  for (const std::string& effect : run.effects) effects.push_back({{"type", effect}});
   const nlohmann::json configuration = {
       {"name", run.name},
+      {"effects", effects},
       {"recordings", {{{"recording", "a"}}}},
       {"material", {{"law", "neo_hookean"}, {"young_modulus", run.young_modulus}}}};
   directory.Begin(configuration, {{"a/markers.csv", run.content}}, 0);
@@ -119,6 +122,7 @@ void WriteSmallChain(const std::filesystem::path& folder) {
   SmallRun run;
   for (LedgerModel& model : ledger.models) {
     run.name = model.added.empty() ? "bar" : "bar+" + model.added;
+    if (!model.added.empty()) run.effects.push_back(model.added);
     model.run = folder / run.name;
     WriteSmallFit(model.run, run, model.record);
     if (model.diagnosis) WriteSmallDiagnosis(model.run, *model.diagnosis);

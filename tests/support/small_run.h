@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "record/ledger.h"
 #include "record/motion_record.h"
@@ -15,8 +16,9 @@ struct SmallRun {
   std::string name = "bar";
   double young_modulus = 1e5;  // Pa, in the configuration
   int held_out_frames = 10;
-  std::string marker = "tip";      // the name of the second marker
-  std::string content = "1f2e3d";  // hash of the recording
+  std::string marker = "tip";             // the name of the second marker
+  std::string content = "1f2e3d";         // hash of the recording
+  std::vector<std::string> effects = {};  // of the model, in the configuration
 };
 
 // Writes manifest.json, calibration and its misfit, and the motion of SmallMotion().
