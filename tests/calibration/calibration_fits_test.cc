@@ -51,8 +51,8 @@ class FitOutOfBudget : public testing::Test {
     EXPECT_FALSE(fit.message.empty());
     ASSERT_EQ(fit.parameters.size(), start.size());
     EXPECT_LT(fit.rms, 0.9 * RmsAt(start));
-    // Equilibria are sought from other starts, and found to a tolerance.
-    EXPECT_NEAR(RmsAt(fit.parameters), fit.rms, 1e-3 * fit.rms);
+    // What the frames are compared with was fixed at the start of the fit.
+    EXPECT_NEAR(RmsAt(fit.parameters), fit.rms, 0.03 * fit.rms);
   }
 
   TemporaryFolder folder_;
