@@ -158,8 +158,11 @@ class Fitter {
     }
     CalibrationOptions within = options;
     within.max_predictions = budget_.PredictionsLeft(TimeStep());
-    const Calibration calibration = kept_ != nullptr ? KeptFit(horizon, parameters, within)
-                                                     : NewFit(horizon, parameters, within);
+    const int before = evaluations_;
+    const auto fit = [&] { return NewFit(horizon, parameters, within); };
+    const Calibration calibration =
+        kept_ != nullptr ? kept_->FindOrFit(KeyOf(horizon, parameters, within), fit) : fit();
+    evaluations_ = before + calibration.predictions;
     budget_.Spend(calibration.predictions, TimeStep());
     return calibration;
   }
@@ -180,21 +183,14 @@ class Fitter {
         options);
   }
 
-  Calibration KeptFit(double horizon, const std::vector<CalibratedParameter>& parameters,
-                      const CalibrationOptions& options) {
+  std::string KeyOf(double horizon, const std::vector<CalibratedParameter>& parameters,
+                    const CalibrationOptions& options) const {
     std::string all = fmt::format("{:a} {:a} {:a} {:a} {:a} {} {}", horizon, TimeStep(),
                                   problem_.noise(), problem_.scan_noise(), memory_.reach_factor,
                                   options.max_iterations, options.max_predictions);
     for (const CalibratedParameter& parameter : parameters)
       all += fmt::format(" {:a} {:a}", parameter.start, parameter.prior_deviation);
-    const std::string key = HashBytes(all);
-    if (const Calibration* found = kept_->Find(key)) {
-      evaluations_ += found->predictions;
-      return *found;
-    }
-    const Calibration calibration = NewFit(horizon, parameters, options);
-    kept_->Keep(key, calibration);
-    return calibration;
+    return HashBytes(all);
   }
 
   double TimeStep() const { return problem_.study().time_step; }

@@ -77,6 +77,13 @@ void FitStore::Keep(const std::string& key, const Calibration& calibration) {
   fits_[key] = calibration;
 }
 
+Calibration FitStore::FindOrFit(const std::string& key, const std::function<Calibration()>& fit) {
+  if (const Calibration* kept = Find(key)) return *kept;
+  const Calibration calibration = fit();
+  Keep(key, calibration);
+  return calibration;
+}
+
 void FitStore::Drop() {
   std::error_code ignored;  // a file that remains is harmless: its origin is checked
   std::filesystem::remove(file_, ignored);

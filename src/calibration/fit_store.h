@@ -7,6 +7,7 @@
 #define LACUNA_CALIBRATION_FIT_STORE_H_
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -27,6 +28,8 @@ class FitStore {
   const Calibration* Find(const std::string& key) const;
   // Adds a fit and rewrites the file. Throws InputError if it cannot be written.
   void Keep(const std::string& key, const Calibration& calibration);
+  // The kept fit or, where there is none, the result of `fit`, which is kept.
+  Calibration FindOrFit(const std::string& key, const std::function<Calibration()>& fit);
   // Removes the file, once the result of the whole has been saved.
   void Drop();
 

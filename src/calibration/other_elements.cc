@@ -28,11 +28,12 @@ bool IsEnough(const OtherElements& other, double wanted) {
 bool ListsNodes(const PredictionStudy& study) {
   return std::any_of(study.recordings.begin(), study.recordings.end(),
                      [](const PredictedRecording& item) {
-                       std::vector<Region> regions = RegionsOf(item.recording.object);
-                       if (item.hold) regions.push_back(item.hold->region);
-                       return std::any_of(regions.begin(), regions.end(), [](const Region& region) {
-                         return std::holds_alternative<NodeRegion>(region.shape);
-                       });
+                       const auto lists = [](const Region* region) {
+                         return std::holds_alternative<NodeRegion>(region->shape);
+                       };
+                       const auto regions = RegionsIn(item.recording.object);
+                       return std::any_of(regions.begin(), regions.end(), lists) ||
+                              (item.hold && lists(&item.hold->region));
                      });
 }
 

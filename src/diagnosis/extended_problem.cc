@@ -243,11 +243,7 @@ Calibration ExtendedProblem::Kept(const std::string& purpose,
                                   double hopeless_cost,
                                   const std::function<Calibration()>& fit) const {
   if (baseline_.kept == nullptr) return fit();
-  const std::string key = KeyOf(parameters, purpose, hopeless_cost);
-  if (const Calibration* kept = baseline_.kept->Find(key)) return *kept;
-  const Calibration calibration = fit();
-  baseline_.kept->Keep(key, calibration);
-  return calibration;
+  return baseline_.kept->FindOrFit(KeyOf(parameters, purpose, hopeless_cost), fit);
 }
 
 ExtendedFit ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,

@@ -43,13 +43,11 @@ void Integrate(Body* body) {
   body->weight.resize(body->PointCount());
   body->shape_gradient.resize(nodes, 3 * body->PointCount());
 
-  // Barycentric coordinates sum to 1, so derivatives are taken along the three edges from corner 0.
-  const Eigen::Matrix<double, 4, 3> along_edges{{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   std::vector<Eigen::MatrixX3d> reference(points);
   std::vector<Eigen::VectorXd> shape(points);
   for (int p = 0; p < points; ++p) {
     shape[p] = ShapeValues(mesh.Order(), rule.points.col(p));
-    reference[p] = ShapeDerivatives(mesh.Order(), rule.points.col(p)) * along_edges;
+    reference[p] = ShapeDerivativesAlongEdges(mesh.Order(), rule.points.col(p));
   }
 
   Eigen::Matrix3Xd corner(3, nodes);

@@ -25,6 +25,11 @@ Eigen::MatrixX4d ShapeDerivatives(int order, const Eigen::Vector4d& barycentric)
   return derivatives;
 }
 
+Eigen::MatrixX3d ShapeDerivativesAlongEdges(int order, const Eigen::Vector4d& barycentric) {
+  const Eigen::Matrix<double, 4, 3> along_edges{{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  return ShapeDerivatives(order, barycentric) * along_edges;
+}
+
 Eigen::Matrix4Xd NodeCoordinates(int order) {
   if (order == 1) return Eigen::Matrix4d::Identity();
   Eigen::Matrix4Xd coordinates = Eigen::Matrix4Xd::Zero(4, 10);

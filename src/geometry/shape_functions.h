@@ -22,6 +22,11 @@ Eigen::VectorXd ShapeValues(int order, const Eigen::Vector4d& barycentric);
 // The derivatives ∂N_a/∂ξ_k (nodes × 4), where the four coordinates are treated as independent.
 Eigen::MatrixX4d ShapeDerivatives(int order, const Eigen::Vector4d& barycentric);
 
+// Their derivatives along the three edges from corner 0 (nodes × 3), i.e. by the last three
+// coordinates ξ where the first one is 1 minus their sum. With the nodes x (3 × nodes), x · these
+// is the Jacobian ∂x/∂ξ.
+Eigen::MatrixX3d ShapeDerivativesAlongEdges(int order, const Eigen::Vector4d& barycentric);
+
 // The barycentric coordinates of the nodes of an element, 4 × nodes.
 Eigen::Matrix4Xd NodeCoordinates(int order);
 

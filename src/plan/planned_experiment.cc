@@ -144,9 +144,7 @@ void WritePlannedExperiment(const FittedRun& fitted, double time_step, const Pro
         fmt::format("\"{}\" cannot be played: {}", protocol.name, played.summary.message));
   MakeFolder(folder);
   WriteTetMesh(folder / "object.msh", fitted.mesh);
-  std::vector<Region*> regions = RegionsIn(&planned.item.recording.object);
-  if (planned.item.hold) regions.push_back(&planned.item.hold->region);
-  ListNodesOfMesh(fitted.mesh, regions);
+  ListNodesOfMesh(fitted.mesh, RegionsIn(&planned.item));
   MarkerRecording recording = AsRecording(planned.item, played, /*noise=*/0, /*seed=*/0);
   recording.reference = folder / "object.msh";
   recording.comment =

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/quantity.h"
 #include "core/suggestion.h"
 
 namespace lacuna {
@@ -48,8 +49,9 @@ Protocol::Shake ReadShake(const Config& shake, const PredictedRecording& base, d
   if (read.frequency > highest)
     shake.Fail("frequency",
                fmt::format("at most {:.3g} Hz can be resolved: a period needs at least {:g} time "
-                           "steps, of {:.3g} ms here, and {:g} frames of \"{}\"",
-                           highest, kStepsPerPeriod, 1e3 * time_step, kFramesPerPeriod, base.name));
+                           "steps, of {} here, and {:g} frames of \"{}\"",
+                           highest, kStepsPerPeriod, DurationText(time_step), kFramesPerPeriod,
+                           base.name));
   return read;
 }
 

@@ -44,6 +44,12 @@ void ShareGravity(const EffectList& effects, std::vector<ModelParameter>* parame
 
 }  // namespace
 
+std::vector<Region*> RegionsIn(PredictedRecording* item) {
+  std::vector<Region*> regions = RegionsIn(&item->recording.object);
+  if (item->hold) regions.push_back(&item->hold->region);
+  return regions;
+}
+
 std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
   std::vector<ModelParameter> parameters;
   std::map<std::string, int> seen;

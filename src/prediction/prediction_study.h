@@ -60,6 +60,8 @@ struct PredictedRecording {
   // The time, s, until which the object is at rest.
   double StartTime() const { return hold ? hold->release : recording.times[frames.front()]; }
 };
+// The regions of its object and of its hold.
+std::vector<Region*> RegionsIn(PredictedRecording* item);
 
 // A parameter of the model that may be fitted, with its prior.
 struct ModelParameter {

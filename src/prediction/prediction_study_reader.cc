@@ -157,11 +157,9 @@ void AddDensity(const Config& config, PredictionStudy* study) {
 // it has none, to those of the first recording, whose reference shape is meshed.
 void NumberListsOfRecordings(PredictionStudy* study) {
   for (PredictedRecording& item : study->recordings) {
-    std::vector<Region*> regions = RegionsIn(&item.recording.object);
-    if (item.hold) regions.push_back(&item.hold->region);
     const bool has_reference = item.recording.reference.source != ReferenceSource::kFirstFrame;
     NumberListedNodes(has_reference ? item.recording : study->recordings.front().recording,
-                      study->mesh, regions);
+                      study->mesh, RegionsIn(&item));
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/text_file.h"
+#include "scan/table_numbers.h"
 
 namespace lacuna {
 namespace {
@@ -157,11 +158,7 @@ void DoubtFirstRow(DelimitedTable* table) {
 // The columns of this name, with regard to the case of its letters or without.
 std::vector<Eigen::Index> ColumnsNamed(const DelimitedTable& table, const std::string& name,
                                        bool case_counts) {
-  const auto is_same = [case_counts](char a, char b) {
-    if (case_counts) return a == b;
-    return std::tolower(static_cast<unsigned char>(a)) ==
-           std::tolower(static_cast<unsigned char>(b));
-  };
+  const auto is_same = [case_counts](char a, char b) { return IsSameLetter(a, b, case_counts); };
   std::vector<Eigen::Index> columns;
   for (size_t column = 0; column < table.header.size(); ++column) {
     const std::string& other = table.header[column];
@@ -186,42 +183,6 @@ std::optional<Eigen::Index> OnlyColumn(const DelimitedTable& table, const std::s
 
 }  // namespace
 
-bool MayBeThousands(std::string_view text) {
-  if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
-  const size_t comma = text.find(',');
-  if (comma == std::string_view::npos || comma < 1 || comma > 3 || text.size() != comma + 4)
-    return false;
-  if (text.front() == '0') return false;
-  return std::all_of(text.begin(), text.end(), [](char c) {
-    return c == ',' || std::isdigit(static_cast<unsigned char>(c)) != 0;
-  });
-}
-
-void DecimalCommas::Add(std::string_view entry, int line, int column) {
-  if (entry.find(',') == std::string_view::npos) {
-    has_point_ = has_point_ || entry.find('.') != std::string_view::npos;
-  } else if (!MayBeThousands(entry)) {
-    is_certain_ = true;
-  } else if (doubtful_.empty()) {
-    doubtful_ = entry;
-    line_ = line;
-    column_ = column;
-  }
-}
-
-void DecimalCommas::RefuseThousands(const std::filesystem::path& file, char delimiter) const {
-  if (doubtful_.empty()) return;
-  if (!has_point_ && (is_certain_ || delimiter != ',')) return;
-  std::string thousands = doubtful_, decimal = doubtful_;
-  thousands.erase(thousands.find(','), 1);
-  decimal[decimal.find(',')] = '.';
-  throw InputError(
-      {file.string(), line_, column_},
-      fmt::format("got \"{}\", which is {} with a separator of thousands and {} with a "
-                  "decimal comma; write the numbers of the file without such commas",
-                  doubtful_, thousands, decimal));
-}
-
 std::optional<char> DeclaredDelimiter(std::string_view line) {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   if (line.size() == 7 && line.front() == '"' && line.back() == '"') line = line.substr(1, 5);
@@ -230,6 +191,11 @@ std::optional<char> DeclaredDelimiter(std::string_view line) {
   return std::string_view(";,\t| ").find(line[4]) == std::string_view::npos
              ? std::nullopt
              : std::optional<char>(line[4]);
+}
+
+bool IsSameLetter(char a, char b, bool case_counts) {
+  if (case_counts) return a == b;
+  return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
 }
 
 std::string_view Trim(std::string_view text) {
@@ -274,24 +240,6 @@ std::vector<std::string_view> SplitFields(std::string_view line, char delimiter)
     if (end == std::string_view::npos) return fields;
     at = end + 1;
   }
-}
-
-std::optional<double> ParseNumber(std::string_view text) {
-  if (text.empty()) return std::numeric_limits<double>::quiet_NaN();
-  if (text.front() == '+') text.remove_prefix(1);
-  double value = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-std::optional<double> ParseDecimal(std::string_view text) {
-  if (const std::optional<double> value = ParseNumber(text)) return value;
-  std::string with_point(text);
-  const size_t comma = with_point.find(',');
-  if (comma == std::string::npos || with_point.find('.') != std::string::npos) return std::nullopt;
-  with_point[comma] = '.';
-  return ParseNumber(with_point);
 }
 
 ColumnName SplitColumnName(const std::string& header) {

@@ -56,29 +56,11 @@ struct ColumnName {
 };
 ColumnName SplitColumnName(const std::string& header);
 
-// Whether the comma in a number may as well separate thousands: in "1,005", but not in "0,500" or
-// "1,5".
-bool MayBeThousands(std::string_view text);
-
-// Whether the commas in the numbers of one file are decimal ones. "1,005" may also be a thousand
-// and five. Its comma is taken for a decimal one if no number of the file has a decimal point and,
-// where ',' is also the delimiter, another number has a comma that cannot separate thousands, such
-// as "1,5".
-class DecimalCommas {
- public:
-  // `line` and `column` of the entry in the file, from 1.
-  void Add(std::string_view entry, int line, int column);
-  // Throws InputError at the first entry in doubt, with both of its meanings.
-  void RefuseThousands(const std::filesystem::path& file, char delimiter) const;
-
- private:
-  bool has_point_ = false, is_certain_ = false;
-  std::string doubtful_;  // the first such entry; empty: there is none
-  int line_ = 0, column_ = 0;
-};
-
 // The delimiter that a line such as "sep=;" declares, with which spreadsheet programs begin a file.
 std::optional<char> DeclaredDelimiter(std::string_view line);
+
+// Whether two letters are the same, with regard to their case or without.
+bool IsSameLetter(char a, char b, bool case_counts);
 
 // Without blanks, tabs and line ends at both ends.
 std::string_view Trim(std::string_view text);
@@ -89,13 +71,6 @@ std::vector<std::string_view> SplitLines(std::string_view content);
 // Cuts `line` at the delimiter (' ' stands for any run of blanks) and trims blanks around each
 // entry. A delimiter between quotes does not count. The entries refer to the memory of `line`.
 std::vector<std::string_view> SplitFields(std::string_view line, char delimiter);
-
-// The number that `text` consists of (NaN for an empty text and for "nan"), or nothing when it is
-// not a number.
-std::optional<double> ParseNumber(std::string_view text);
-
-// The same for a number with a decimal point or a decimal comma.
-std::optional<double> ParseDecimal(std::string_view text);
 
 // The content of a file: all of its bytes, or its text (ReadTextFile). Throw InputError when it
 // cannot be read or is empty.

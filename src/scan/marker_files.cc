@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "scan/capture_tables.h"
 #include "scan/delimited_table.h"
+#include "scan/table_numbers.h"
 #include "scan/time_series.h"
 
 namespace lacuna {
@@ -26,11 +27,7 @@ std::string MatchStar(const std::string& column, const std::string& pattern, boo
   const std::string before = pattern.substr(0, star);
   const std::string after = pattern.substr(star + 1);
   if (column.size() <= before.size() + after.size()) return "";
-  const auto is_same = [case_counts](char a, char b) {
-    if (case_counts) return a == b;
-    return std::tolower(static_cast<unsigned char>(a)) ==
-           std::tolower(static_cast<unsigned char>(b));
-  };
+  const auto is_same = [case_counts](char a, char b) { return IsSameLetter(a, b, case_counts); };
   if (!std::equal(before.begin(), before.end(), column.begin(), is_same)) return "";
   if (!std::equal(after.rbegin(), after.rend(), column.rbegin(), is_same)) return "";
   return column.substr(before.size(), column.size() - before.size() - after.size());

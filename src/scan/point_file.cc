@@ -24,6 +24,7 @@
 #include "scan/delimited_table.h"
 #include "scan/displacement_table.h"
 #include "scan/pcd_header.h"
+#include "scan/table_numbers.h"
 
 namespace lacuna {
 namespace {

@@ -7,6 +7,20 @@
 #include "scan/time_span.h"
 
 namespace lacuna {
+namespace {
+
+// `Object` is RecordedObject or const RecordedObject.
+template <typename Object>
+auto PointersToRegions(Object* object) {
+  std::vector<decltype(&object->grips.front().region)> regions;
+  for (auto& support : object->fixed) regions.push_back(&support.region);
+  for (auto& grip : object->grips) regions.push_back(&grip.region);
+  for (auto& force : object->forces)
+    if (force.region) regions.push_back(&*force.region);
+  return regions;
+}
+
+}  // namespace
 
 std::vector<RecordedSupport> ReadSupports(const Config& config, const DataLocation& data) {
   std::vector<RecordedSupport> supports;
@@ -29,31 +43,19 @@ std::string WriteSupport(const RecordedSupport& support) {
                        support.placement);
 }
 
-std::vector<Region> RegionsOf(const RecordedObject& object) {
-  std::vector<Region> regions;
-  for (const RecordedSupport& support : object.fixed) regions.push_back(support.region);
-  for (const RecordedGrip& grip : object.grips) regions.push_back(grip.region);
-  for (const MeasuredForce& force : object.forces)
-    if (force.region) regions.push_back(*force.region);
-  return regions;
+std::vector<const Region*> RegionsIn(const RecordedObject& object) {
+  return PointersToRegions(&object);
 }
 
-std::vector<Region*> RegionsIn(RecordedObject* object) {
-  std::vector<Region*> regions;
-  for (RecordedSupport& support : object->fixed) regions.push_back(&support.region);
-  for (RecordedGrip& grip : object->grips) regions.push_back(&grip.region);
-  for (MeasuredForce& force : object->forces)
-    if (force.region) regions.push_back(&*force.region);
-  return regions;
-}
+std::vector<Region*> RegionsIn(RecordedObject* object) { return PointersToRegions(object); }
 
 std::vector<std::filesystem::path> FilesOf(const RecordedObject& object) {
   std::vector<std::filesystem::path> files;
   const auto add = [&](const std::filesystem::path& file) {
     if (!file.empty()) files.push_back(file);
   };
-  for (const Region& region : RegionsOf(object))
-    if (const auto* listed = std::get_if<NodeRegion>(&region.shape)) add(listed->file.file);
+  for (const Region* region : RegionsIn(object))
+    if (const auto* listed = std::get_if<NodeRegion>(&region->shape)) add(listed->file.file);
   for (const RecordedGrip& grip : object.grips) add(grip.file);
   for (const MeasuredForce& force : object.forces) add(force.file);
   for (const MeasuredReaction& reaction : object.reactions) add(reaction.file);

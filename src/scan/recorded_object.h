@@ -44,7 +44,7 @@ std::string DescribeSupport(const RecordedSupport& support);
 std::string WriteSupport(const RecordedSupport& support);
 
 // The regions that the object has: of the parts that are held, and where forces act.
-std::vector<Region> RegionsOf(const RecordedObject& object);
+std::vector<const Region*> RegionsIn(const RecordedObject& object);
 std::vector<Region*> RegionsIn(RecordedObject* object);
 
 // The names of the held parts, the axes along which they are held, and how well their placement is

@@ -91,11 +91,11 @@ void AddRegionsBesideTheShape(const Recording& recording, std::vector<std::strin
   const Eigen::AlignedBox3d box = ReferenceBox(reference);
   const Eigen::Vector3d thickness = Eigen::Vector3d::Constant(reference.sheet_thickness);
   const Eigen::AlignedBox3d thick(box.min() - thickness, box.max() + thickness);
-  for (const Region& region : RegionsOf(recording.object))
-    if (!Meets(region, thick))
+  for (const Region* region : RegionsIn(recording.object))
+    if (!Meets(*region, thick))
       findings->push_back(
           fmt::format("region \"{}\" ({}) holds nothing of the reference shape, which extends {}",
-                      region.name, DescribeRegion(region), DescribeCorners(box)));
+                      region->name, DescribeRegion(*region), DescribeCorners(box)));
 }
 
 }  // namespace

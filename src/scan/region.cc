@@ -9,6 +9,7 @@
 
 #include "core/npy.h"
 #include "core/quoted_text.h"
+#include "geometry/shape_functions.h"
 #include "geometry/tri_mesh.h"
 #include "scan/delimited_table.h"
 #include "scan/yaml_format.h"
@@ -70,12 +71,11 @@ HalfSpaceRegion ReadHalfSpace(const Config& config) {
 // Adds the midpoints of the edges both of whose ends are in the region, except for midpoints that
 // the file numbers itself.
 void AddMidpoints(const TetMesh& mesh, int file_nodes, std::vector<char>* is_in) {
-  constexpr int kEnds[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
   for (const auto tet : mesh.tets.colwise())
     for (int edge = 0; edge < 6; ++edge) {
       const int midpoint = tet[4 + edge];
-      if (midpoint >= file_nodes && (*is_in)[tet[kEnds[edge][0]]] && (*is_in)[tet[kEnds[edge][1]]])
-        (*is_in)[midpoint] = 1;
+      const auto& [a, b] = kTetEdges[static_cast<size_t>(edge)];
+      if (midpoint >= file_nodes && (*is_in)[tet[a]] && (*is_in)[tet[b]]) (*is_in)[midpoint] = 1;
     }
 }
 

@@ -8,7 +8,6 @@
 #include "core/claim.h"
 #include "core/error.h"
 #include "core/hash.h"
-#include "core/workers.h"
 
 namespace lacuna {
 namespace {
@@ -44,28 +43,37 @@ std::vector<size_t> WorkOrder(const std::vector<std::filesystem::path>& cases) {
   return indices;
 }
 
+int ShareCases(const std::vector<std::filesystem::path>& cases,
+               const std::filesystem::path& of_lock, const WorkerOptions& options,
+               const std::function<void(size_t k)>& job) {
+  const std::vector<size_t> order = WorkOrder(cases);
+  WorkerOptions ordered = options;
+  if (options.crashed)
+    ordered.crashed = [&](size_t at, const std::string& reason) {
+      options.crashed(order[at], reason);
+    };
+  for (const std::filesystem::path& own : cases) MakeFolder(own / of_lock);
+  return ShareOut(cases.size(), ordered, [&](size_t at) {
+    const Claim claim(cases[order[at]] / of_lock / kClaimFile);
+    if (claim.holds()) job(order[at]);
+  });
+}
+
 int WorkOn(const std::vector<std::filesystem::path>& cases, const std::filesystem::path& result,
            int workers, const std::function<void(size_t k)>& job) {
-  const auto folder = [&](size_t k) { return (cases[k] / result).parent_path(); };
-  const std::vector<size_t> order = WorkOrder(cases);
+  const auto failure = [&](size_t k) { return cases[k] / result.parent_path() / kFailureFile; };
   const auto keep_failure = [&](size_t k, const std::string& reason) {
-    WriteFileAtomically(folder(k) / kFailureFile, reason + "\n");
+    WriteFileAtomically(failure(k), reason + "\n");
   };
-  for (size_t k = 0; k < cases.size(); ++k) MakeFolder(folder(k));
-  const auto keep_crash = [&](size_t at, const std::string& reason) {
-    keep_failure(order[at], reason);
-  };
-  return ShareOut(cases.size(), {.workers = workers, .crashed = keep_crash}, [&](size_t at) {
-    const size_t k = order[at];
-    const Claim claim(folder(k) / kClaimFile);
-    if (!claim.holds()) return;
-    try {
-      if (!std::filesystem::exists(cases[k] / result)) job(k);
-      std::filesystem::remove(folder(k) / kFailureFile);
-    } catch (const InputError& problem) {
-      keep_failure(k, problem.what());
-    }
-  });
+  return ShareCases(cases, result.parent_path(), {.workers = workers, .crashed = keep_failure},
+                    [&](size_t k) {
+                      try {
+                        if (!std::filesystem::exists(cases[k] / result)) job(k);
+                        std::filesystem::remove(failure(k));
+                      } catch (const InputError& problem) {
+                        keep_failure(k, problem.what());
+                      }
+                    });
 }
 
 }  // namespace lacuna

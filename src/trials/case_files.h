@@ -7,6 +7,8 @@
 #include <functional>
 #include <vector>
 
+#include "core/workers.h"
+
 namespace lacuna {
 
 inline constexpr char kTruthFile[] = "truth.json";  // a TrialCase
@@ -29,16 +31,22 @@ std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder);
 // name. Throws InputError if the suite has no folder.
 std::vector<std::filesystem::path> SkippedCasesIn(const std::filesystem::path& folder);
 
-// The order in which cases are made and WorkOn takes them, indices into `cases`: that of the hashes
-// of their names, which has nothing to do with what was hidden in them. Hence the first results of
+// The order in which ShareCases takes the cases, indices into `cases`: that of the hashes of their
+// names, which has nothing to do with what was hidden in them. Hence the first results of
 // a suite that is stopped early are a fair sample of all.
 std::vector<size_t> WorkOrder(const std::vector<std::filesystem::path>& cases);
 
+// Calls job(k) for each case in WorkOrder, in processes as `options` says, unless another call
+// works on it: the lock (core/claim.h) is in the folder `of_lock` of the case, which is made.
+// Returns the result of ShareOut (core/workers.h).
+int ShareCases(const std::vector<std::filesystem::path>& cases,
+               const std::filesystem::path& of_lock, const WorkerOptions& options,
+               const std::function<void(size_t k)>& job);
+
 // For each case k whose folder has no file `result` yet, a path relative to it, calls job(k), which
-// makes it, in WorkOrder and in a process of its own, `workers` at a time. A lock beside the result
-// (core/claim.h) lets several calls share the cases. If the job throws InputError or its process
-// crashes, failed.txt beside the result has the reason until a later call has made the result.
-// Returns the result of ShareOut (core/workers.h), for which an InputError is no failure.
+// makes it, by ShareCases with the lock beside the result, `workers` at a time. If the job throws
+// InputError or its process crashes, failed.txt beside the result has the reason until a later call
+// has made the result. Returns the result of ShareCases, for which an InputError is no failure.
 int WorkOn(const std::vector<std::filesystem::path>& cases, const std::filesystem::path& result,
            int workers, const std::function<void(size_t k)>& job);
 

@@ -12,8 +12,6 @@
 
 #include "calibration/linear_misfit.h"
 #include "core/atomic_file.h"
-#include "core/claim.h"
-#include "core/workers.h"
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/nuisance_catalogue.h"
@@ -326,15 +324,9 @@ int MakeTrials(const TrialSuite& suite, const std::filesystem::path& folder, int
   const std::vector<TrialCase> cases = CasesOf(suite);
   MakeFolder(folder);
   std::vector<std::filesystem::path> folders;
-  for (const TrialCase& trial : cases) {
-    folders.push_back(folder / trial.name);
-    MakeFolder(folders.back());
-  }
-  const std::vector<size_t> order = WorkOrder(folders);
-  return ShareOut(cases.size(), {.workers = workers}, [&](size_t at) {
-    const Claim claim(folders[order[at]] / kClaimFile);
-    if (claim.holds()) MakeCase(cases[order[at]], folder);
-  });
+  for (const TrialCase& trial : cases) folders.push_back(folder / trial.name);
+  return ShareCases(folders, "", {.workers = workers},
+                    [&](size_t k) { MakeCase(cases[k], folder); });
 }
 
 }  // namespace lacuna

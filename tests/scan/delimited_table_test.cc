@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scan/table_numbers.h"
 #include "scan/test_files.h"
 
 namespace lacuna {

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "scan/delimited_table.h"
+#include "scan/table_numbers.h"
 
 namespace lacuna {
 
