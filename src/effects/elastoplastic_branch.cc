@@ -46,26 +46,33 @@ class ElastoplasticLaw {
 
   KelvinMatrix Moduli(const KelvinVector& strain, const State& plastic) const {
     const KelvinVector trial = Trial(strain, plastic);
-    const double norm = trial.norm();
-    KelvinMatrix moduli = KelvinMatrix::Identity();
-    moduli.topLeftCorner<3, 3>().array() -= 1.0 / 3;
-    if (norm > radius_) {
-      const KelvinVector direction = trial / norm;
-      moduli = (radius_ / norm) * (moduli - direction * direction.transpose()).eval();
-    }
-    return kTwoMu * moduli;
+    KelvinMatrix moduli;
+    for (int k = 0; k < 6; ++k)
+      moduli.col(k) = kTwoMu * ReturnedBy(trial, Deviator(KelvinVector::Unit(k)));
+    return moduli;
   }
 
   KelvinVector StressDerivative(const KelvinVector& strain, const State& plastic,
                                 int /*parameter: yield_strain*/) const {
-    const KelvinVector trial = Trial(strain, plastic);
-    const double norm = trial.norm();
-    if (norm <= radius_) return KelvinVector::Zero();
-    return (kTwoMu * kNormOfUnitStretch / norm) * trial;
+    return kTwoMu * ReturnedByYield(Trial(strain, plastic));
   }
 
   State AtEnd(const KelvinVector& strain, const State& plastic) const {
     return Deviator(strain) - Returned(Trial(strain, plastic));
+  }
+
+  KelvinVector StressByState(const KelvinVector& strain, const State& plastic,
+                             const State& change) const {
+    return -kTwoMu * ReturnedBy(Trial(strain, plastic), change);
+  }
+  State AtEndBy(const KelvinVector& strain, const State& plastic, const KelvinVector& strain_change,
+                const State& change) const {
+    return Deviator(strain_change) -
+           ReturnedBy(Trial(strain, plastic), Trial(strain_change, change));
+  }
+  State AtEndByParameter(const KelvinVector& strain, const State& plastic,
+                         int /*parameter: yield_strain*/) const {
+    return -ReturnedByYield(Trial(strain, plastic));
   }
 
  private:
@@ -128,6 +135,18 @@ class ElastoplasticLaw {
   KelvinVector Returned(const KelvinVector& trial) const {
     const double norm = trial.norm();
     return norm <= radius_ ? trial : KelvinVector((radius_ / norm) * trial);
+  }
+  // Its change where the trial strain changes, and where the yield strain does.
+  KelvinVector ReturnedBy(const KelvinVector& trial, const KelvinVector& change) const {
+    const double norm = trial.norm();
+    if (norm <= radius_) return change;
+    const KelvinVector direction = trial / norm;
+    return (radius_ / norm) * (change - direction.dot(change) * direction);
+  }
+  KelvinVector ReturnedByYield(const KelvinVector& trial) const {
+    const double norm = trial.norm();
+    if (norm <= radius_) return KelvinVector::Zero();
+    return (kNormOfUnitStretch / norm) * trial;
   }
 
   double radius_;  // √(3/2) ε_y

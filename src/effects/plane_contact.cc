@@ -53,12 +53,12 @@ Penalty PenaltyAt(double depth, double smoothing) {
 //   traction = −μ p u/√(|u|² + w²),
 // the gradient of the convex dissipation μ p √(|u|² + w²), hence smooth and never a source of
 // energy. A body that should stick under a tangential force of r times the limit creeps at
-// w r/√(1 − r²); one that slides at |u| ≫ w lacks 1/2 (w/|u|)² of the limit. In statics there is
-// no velocity and hence no friction. p is taken at the end of the step, not at its start, so
-// that it is exact for long steps and at the first touch. As a consequence, ∂f/∂x =
-// A p′ (−n + μ u/√…) nᵀ is not symmetric; AddTangents adds its symmetric part, or with `convexify`
-// −A p′ n nᵀ, with which the normal problem is solved exactly and the tangential one converges
-// after it.
+// w r/√(1 − r²); one that slides at |u| ≫ w lacks 1/2 (w/|u|)² of the limit. In the equilibrium
+// before a motion there is no velocity and hence no friction; in a quasi-static motion v is the
+// mean over the step, (x − xₙ)/h. p is taken at the end of the step, not at its start, so that it
+// is exact for long steps and at the first touch. As a consequence, ∂f/∂x = A p′ (−n + μ u/√…) nᵀ
+// is not symmetric; AddTangents adds its symmetric part, or with `convexify` −A p′ n nᵀ, with which
+// the normal problem is solved exactly and the tangential one converges after it.
 class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
  public:
   enum Parameter { kStiffness, kNormal, kOffset = kNormal + 3, kFriction, kSlip, kSmoothing };

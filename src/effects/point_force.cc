@@ -19,6 +19,9 @@
 namespace lacuna {
 namespace {
 
+// s: before and after every recording, also one whose clock counts from 1970.
+constexpr double kAlways = 1e12;
+
 class PointForceEffect final : public CloneableEffect<PointForceEffect> {
  public:
   enum Parameter { kForceValue, kCentre = kForceValue + 3, kRadius = kCentre + 3, kStart, kStop };
@@ -101,20 +104,20 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
                  Eigen::Vector3d::Constant(kMustBeGiven), &card);
     AppendPlace("the place on the body at rest where it acts,", &card);
     card.parameters.push_back({.name = "start",
-                               .meaning = "time from which it acts",
+                               .meaning = "time from which it acts (by default always)",
                                .dimension = kTime,
                                .null_value = kNoNullValue,
                                .plausible_min = 0,
                                .plausible_max = 1e3,
-                               .default_value = 0,
+                               .default_value = -kAlways,
                                .setting = true});
     card.parameters.push_back({.name = "stop",
-                               .meaning = "time from which it acts no longer (by default 1e9 s)",
+                               .meaning = "time from which it acts no longer (by default never)",
                                .dimension = kTime,
                                .null_value = kNoNullValue,
                                .plausible_min = 0,
-                               .plausible_max = 1e9,
-                               .default_value = 1e9,
+                               .plausible_max = 1e3,
+                               .default_value = kAlways,
                                .setting = true});
     return card;
   }

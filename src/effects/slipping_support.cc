@@ -39,21 +39,15 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
     ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
-      force->segment<3>(3 * node) -= Modulus() * area * Held(stretch, SlipDistance());
+      force->segment<3>(3 * node) -= Modulus() * area * Held(stretch);
     });
   }
 
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool /*convexify*/,
                    BlockMatrix* tangent) const override {
     ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
-      const double length = stretch.norm();
-      Eigen::Matrix3d slope = Eigen::Matrix3d::Identity();
-      if (length > SlipDistance()) {
-        const Eigen::Vector3d direction = stretch / length;
-        slope = SlipDistance() / length * (slope - direction * direction.transpose()).eval();
-      }
       tangent->Block(tangent->pattern().diagonal[node]) -=
-          weights.position * Modulus() * area * slope;
+          weights.position * Modulus() * area * HeldBy(stretch);
     });
   }
 
@@ -62,15 +56,15 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
     if (parameter >= kPart) {
       const Eigen::VectorXd by = part_.AreasBy(at.body, TheCard().type, parameter - kPart);
       ForEachSpring(at, [&](int node, double, const Eigen::Vector3d& stretch) {
-        derivative->segment<3>(3 * node) -= Modulus() * by[node] * Held(stretch, SlipDistance());
+        derivative->segment<3>(3 * node) -= Modulus() * by[node] * Held(stretch);
       });
       return;
     }
     ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
       if (parameter == kModulus)
-        derivative->segment<3>(3 * node) -= area * Held(stretch, SlipDistance());
-      else if (stretch.norm() > SlipDistance())
-        derivative->segment<3>(3 * node) -= Modulus() * area * stretch.normalized();
+        derivative->segment<3>(3 * node) -= area * Held(stretch);
+      else
+        derivative->segment<3>(3 * node) -= Modulus() * area * HeldByDistance(stretch);
     });
   }
 
@@ -90,15 +84,37 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
   void InitialState(const Body& body, Eigen::VectorXd* state) const override {
     *state = Eigen::VectorXd::Zero(StateSize(body));
   }
-  void AdvanceState(const Kinematics& at, const Eigen::VectorXd& parameters,
-                    Eigen::VectorXd* state_at_end) const override {
+  void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const override {
     CHECK_EQ(state_at_end->size(), StateSize(at.body));
     *state_at_end = at.state;
     ForEachSpring(at, [&](int node, double, const Eigen::Vector3d& stretch) {
-      state_at_end->segment<3>(3 * node) += stretch - Held(stretch, parameters[kSlipDistance]);
+      state_at_end->segment<3>(3 * node) += stretch - Held(stretch);
     });
   }
-  double StateScale() const override { return SlipDistance(); }
+
+  void AddStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& changes,
+                           Eigen::Ref<Eigen::MatrixXd> forces) const override {
+    ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
+      forces.middleRows<3>(3 * node) +=
+          Modulus() * area * HeldBy(stretch) * changes.middleRows<3>(3 * node);
+    });
+  }
+  void AdvanceStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& moved,
+                               Eigen::Ref<Eigen::MatrixXd> changes) const override {
+    ForEachSpring(at, [&](int node, double, const Eigen::Vector3d& stretch) {
+      const Eigen::Matrix3d slides = Eigen::Matrix3d::Identity() - HeldBy(stretch);
+      changes.middleRows<3>(3 * node) +=
+          slides * (moved.middleRows<3>(3 * node) - changes.middleRows<3>(3 * node));
+    });
+  }
+  // The part that the support holds weighs its springs, and does not change where they slide.
+  void AddStateByParameter(const Kinematics& at, int parameter,
+                           Eigen::Ref<Eigen::VectorXd> change) const override {
+    if (parameter != kSlipDistance) return;
+    ForEachSpring(at, [&](int node, double, const Eigen::Vector3d& stretch) {
+      change.segment<3>(3 * node) -= HeldByDistance(stretch);
+    });
+  }
 
  private:
   static EffectCard MakeCard() {
@@ -148,9 +164,19 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
   double SlipDistance() const { return parameters_[kSlipDistance]; }
 
   // The nearest stretch within the limit.
-  static Eigen::Vector3d Held(const Eigen::Vector3d& stretch, double limit) {
-    const double length = stretch.norm();
+  Eigen::Vector3d Held(const Eigen::Vector3d& stretch) const {
+    const double length = stretch.norm(), limit = SlipDistance();
     return length <= limit ? stretch : Eigen::Vector3d(limit / length * stretch);
+  }
+  // Its derivatives by the stretch and by the limit.
+  Eigen::Matrix3d HeldBy(const Eigen::Vector3d& stretch) const {
+    const double length = stretch.norm(), limit = SlipDistance();
+    if (length <= limit) return Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d direction = stretch / length;
+    return limit / length * (Eigen::Matrix3d::Identity() - direction * direction.transpose());
+  }
+  Eigen::Vector3d HeldByDistance(const Eigen::Vector3d& stretch) const {
+    return stretch.norm() <= SlipDistance() ? Eigen::Vector3d(0, 0, 0) : stretch.normalized();
   }
 
   // Calls visit(node, w_i A_i, x_i − X_i − s_i) with the slip at the start of the step.
@@ -159,7 +185,6 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
     CHECK_EQ(at.state.size(), StateSize(at.body));
     const auto areas = part_.Areas(at.body, TheCard().type);
     for (const int node : at.body.boundary.node) {
-      if ((*areas)[node] == 0) continue;
       const Eigen::Vector3d stretch = at.position.segment<3>(3 * node) -
                                       at.body.mesh.nodes.col(node) - at.state.segment<3>(3 * node);
       visit(node, (*areas)[node], stretch);

@@ -66,6 +66,22 @@ class SofteningLaw {
     return State(std::max(state[0], Norm(strain)));
   }
 
+  KelvinVector StressByState(const KelvinVector& strain, const State& state,
+                             const State& change) const {
+    if (Norm(strain) > state[0]) return KelvinVector::Zero();
+    const double g = Remaining(state[0]);
+    return (-g * g / softening_strain_ * change[0]) * moduli_ * strain;
+  }
+  State AtEndBy(const KelvinVector& strain, const State& state, const KelvinVector& strain_change,
+                const State& change) const {
+    const double now = Norm(strain);
+    return now > state[0] ? State(strain_change.dot(moduli_ * strain) / now) : change;
+  }
+  State AtEndByParameter(const KelvinVector& /*strain*/, const State& /*state*/,
+                         int /*parameter*/) const {
+    return State::Zero();
+  }
+
  private:
   static EffectCard MakeCard() {
     return {

@@ -16,7 +16,10 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
+#include <atomic>
+#include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -108,6 +111,7 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect, Fr
       for (Eigen::Index q = 0; q < values.size(); ++q) {
         const Eigen::Vector3d point = rest.point.col(q);
         values[q] = field_->At(point.data());
+        if (!std::isfinite(values[q])) WarnOnce("is not a finite number", point);
       }
       return values;
     });
@@ -117,7 +121,18 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect, Fr
   // shrink that far.
   Eigen::VectorXd Stretches(const Body& body) const override {
     const Eigen::ArrayXd stretch = 1 + strain_ * FieldAtPoints(body)->array();
+    Eigen::Index least = 0;
+    if (stretch.minCoeff(&least) <= 0)
+      WarnOnce(fmt::format("times {:g} is a strain of {:g}, and nothing can shrink by 100 %",
+                           strain_, stretch[least] - 1),
+               body.point.col(least));
     return (stretch > 0).select(stretch, std::numeric_limits<double>::quiet_NaN());
+  }
+
+  void WarnOnce(const std::string& problem, const Eigen::Vector3d& point) const {
+    if (warned_->exchange(true)) return;
+    LOG(WARNING) << fmt::format("{}: \"{}\" {} at X = {:g}, Y = {:g}, Z = {:g} m", TheCard().type,
+                                field_->text(), problem, point[0], point[1], point[2]);
   }
 
   static Body MakeSwollen(const Body& body, const Eigen::VectorXd& stretch) {
@@ -139,6 +154,8 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect, Fr
   std::shared_ptr<const Expression> field_;  // g
   RestQuantity<Eigen::VectorXd> at_points_;  // g, shared by copies with another strain
   RestQuantity<Body> swollen_;
+  // Shared by copies with another strain, because one warning is enough.
+  std::shared_ptr<std::atomic<bool>> warned_ = std::make_shared<std::atomic<bool>>(false);
 };
 
 std::shared_ptr<const Effect> MakeSwellingField(const Config& config) {

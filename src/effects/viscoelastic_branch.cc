@@ -62,12 +62,24 @@ class ViscoelasticLaw {
 
   KelvinVector StressDerivative(const KelvinVector& strain, const State& state,
                                 int /*parameter: relaxation_time*/) const {
-    return moduli_ *
-           (decay_by_time_ * state.head<6>() + gain_by_time_ * (strain - state.tail<6>()));
+    return moduli_ * SpringStrainByTime(strain, state);
   }
 
   State AtEnd(const KelvinVector& strain, const State& state) const {
     return (State() << SpringStrain(strain, state), strain).finished();
+  }
+
+  KelvinVector StressByState(const KelvinVector& /*strain*/, const State& /*state*/,
+                             const State& change) const {
+    return moduli_ * SpringStrain(KelvinVector::Zero(), change);
+  }
+  State AtEndBy(const KelvinVector& /*strain*/, const State& /*state*/,
+                const KelvinVector& strain_change, const State& change) const {
+    return AtEnd(strain_change, change);  // which is linear
+  }
+  State AtEndByParameter(const KelvinVector& strain, const State& state,
+                         int /*parameter: relaxation_time*/) const {
+    return (State() << SpringStrainByTime(strain, state), KelvinVector::Zero()).finished();
   }
 
  private:
@@ -120,6 +132,11 @@ class ViscoelasticLaw {
 
   KelvinVector SpringStrain(const KelvinVector& strain, const State& state) const {
     return decay_ * state.head<6>() + gain_ * (strain - state.tail<6>());
+  }
+
+  // Its derivative by the relaxation time, 1/s.
+  KelvinVector SpringStrainByTime(const KelvinVector& strain, const State& state) const {
+    return decay_by_time_ * state.head<6>() + gain_by_time_ * (strain - state.tail<6>());
   }
 
   KelvinMatrix moduli_;                          // C for m = 1

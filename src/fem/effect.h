@@ -146,17 +146,30 @@ class Effect {
   virtual std::optional<double> Energy(const Kinematics&) const { return std::nullopt; }
 
   // Internal variables z: their number for a body, their values at rest, and their values at the
-  // end of the step that leads to `at`. InitialState and AdvanceState overwrite their output. The
-  // end of the step is evaluated with `parameters` in place of the effect's own, because
-  // derivatives with respect to them are taken by differences.
+  // end of the step that leads to `at`, which depend on the positions, the time step, the
+  // parameters and the values at its start. InitialState and AdvanceState overwrite their output.
   virtual Eigen::Index StateSize(const Body&) const { return 0; }
   virtual void InitialState(const Body&, Eigen::VectorXd* /*state*/) const {}
-  virtual void AdvanceState(const Kinematics&, const Eigen::VectorXd& /*parameters*/,
-                            Eigen::VectorXd* /*state_at_end*/) const {}
-  // A change of z that makes a difference to the force, > 0, in the unit of z: 1 for strains, the
-  // distance at which a support slides for a slip in m. Derivatives by z are differences over a
-  // small part of it.
-  virtual double StateScale() const { return 1; }
+  virtual void AdvanceState(const Kinematics&, Eigen::VectorXd* /*state_at_end*/) const {}
+
+  // The derivatives of an effect with internal variables; k columns for k directions. At a limit
+  // such as that of yield, they belong to the same branch as the tangent of AddTangents. A point
+  // that has flowed stands exactly at its limit after the step, so that derivatives of both
+  // branches would mix where the next step does not move it.
+  //
+  // Adds ∂f/∂z · changes (state × k) to `forces` (3n × k, N).
+  virtual void AddStateDerivatives(const Kinematics& /*at*/,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& /*changes*/,
+                                   Eigen::Ref<Eigen::MatrixXd> /*forces*/) const {}
+  // Replaces changes of z at the start of the step (state × k) by those at its end, where the
+  // positions at its end change by `moved` (3n × k, m).
+  virtual void AdvanceStateDerivatives(const Kinematics& /*at*/,
+                                       const Eigen::Ref<const Eigen::MatrixXd>& /*moved*/,
+                                       Eigen::Ref<Eigen::MatrixXd> /*changes*/) const {}
+  // Adds ∂z/∂p at the end of the step, at fixed positions and fixed z at its start, for the
+  // parameter of this number, per unit of the parameter. Not called for settings.
+  virtual void AddStateByParameter(const Kinematics& /*at*/, int /*parameter*/,
+                                   Eigen::Ref<Eigen::VectorXd> /*change*/) const {}
 };
 
 }  // namespace lacuna

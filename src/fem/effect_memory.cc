@@ -26,7 +26,7 @@ const std::vector<Eigen::VectorXd>& EffectMemory::Advance(const Eigen::VectorXd&
     model_.effects[j]->AdvanceState(
         {*model_.body, position, velocity, no_acceleration, time, time_step, before,
          ElasticityOf(model_), has_inertia_ && time_step > 0},
-        model_.effects[j]->Parameters(), &state_[j]);
+        &state_[j]);
   }
   return state_;
 }

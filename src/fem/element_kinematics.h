@@ -54,14 +54,19 @@ void SubtractForcesOf10(const double* P, const int* node, const double* shape_gr
 // positions, and their rates if it holds velocities. Since Σ g_a = 0, the value of the first node
 // is subtracted, which avoids cancellation far from the origin.
 template <int kNodes>
-void FieldGradients(const Body& body, int element, const Eigen::VectorXd& field,
+void FieldGradients(const Body& body, int element, const double* field,
                     Eigen::Matrix3d* gradients) {
   const int* node = &body.mesh.tets(0, element);
   const double* shape = &body.shape_gradient(0, 3 * element * QuadraturePoints<kNodes>());
   if constexpr (kNodes == 4)
-    GradientsOf4(field.data(), node, shape, gradients->data());
+    GradientsOf4(field, node, shape, gradients->data());
   else
-    GradientsOf10(field.data(), node, shape, gradients->data());
+    GradientsOf10(field, node, shape, gradients->data());
+}
+template <int kNodes>
+void FieldGradients(const Body& body, int element, const Eigen::VectorXd& field,
+                    Eigen::Matrix3d* gradients) {
+  FieldGradients<kNodes>(body, element, field.data(), gradients);
 }
 
 // Adds the nodal forces −Σ_q P_q g_a(q) of an element to `force` (3n, N), for first Piola–Kirchhoff
@@ -69,13 +74,18 @@ void FieldGradients(const Body& body, int element, const Eigen::VectorXd& field,
 // which exclude concurrent access to the same node.
 template <int kNodes>
 void AddPointForces(const Body& body, int element, const Eigen::Matrix3d* weighted_stress,
-                    Eigen::VectorXd* force) {
+                    double* force) {
   const int* node = &body.mesh.tets(0, element);
   const double* shape = &body.shape_gradient(0, 3 * element * QuadraturePoints<kNodes>());
   if constexpr (kNodes == 4)
-    SubtractForcesOf4(weighted_stress->data(), node, shape, force->data());
+    SubtractForcesOf4(weighted_stress->data(), node, shape, force);
   else
-    SubtractForcesOf10(weighted_stress->data(), node, shape, force->data());
+    SubtractForcesOf10(weighted_stress->data(), node, shape, force);
+}
+template <int kNodes>
+void AddPointForces(const Body& body, int element, const Eigen::Matrix3d* weighted_stress,
+                    Eigen::VectorXd* force) {
+  AddPointForces<kNodes>(body, element, weighted_stress, force->data());
 }
 
 // Adds an element matrix K to a tangent, with K_ba = kMirror K_abᵀ: symmetric for kMirror = 1 and

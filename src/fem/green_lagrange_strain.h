@@ -57,6 +57,12 @@ inline KelvinVector GreenLagrangeStrain(const Eigen::Matrix3d& F) {
   return strain;
 }
 
+// Its change ½ (Fᵀ δF + δFᵀ F) where F changes by δF.
+inline KelvinVector StrainChange(const Eigen::Matrix3d& F, const Eigen::Matrix3d& change) {
+  const Eigen::Matrix3d product = F.transpose() * change;
+  return 0.5 * ToKelvin(product + product.transpose());
+}
+
 // ∂E/∂F (6 × 9), with F as a column-major vector.
 inline Eigen::Matrix<double, 6, 9> StrainDerivative(const Eigen::Matrix3d& F) {
   Eigen::Matrix<double, 6, 9> derivative = Eigen::Matrix<double, 6, 9>::Zero();

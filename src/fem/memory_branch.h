@@ -28,8 +28,12 @@
 //   KelvinVector Stress(E, z) const;                                               s
 //   KelvinMatrix Moduli(E, z) const;                                               ∂s/∂E
 //   KelvinVector StressDerivative(E, z, int parameter) const;     ∂s/∂(parameter > 0, no setting)
-//   State AtEnd(E, z) const;                                      z at the end of the step
-// with State a Vector<double, kStateSize>.
+//   State AtEnd(E, z) const;                                      z⁺, z at the end of the step
+//   KelvinVector StressByState(E, z, const State& dz) const;                       ∂s/∂z dz
+//   State AtEndBy(E, z, const KelvinVector& dE, const State& dz) const;   ∂z⁺/∂E dE + ∂z⁺/∂z dz
+//   State AtEndByParameter(E, z, int parameter) const;            ∂z⁺/∂(parameter > 0, no setting)
+// with State a Vector<double, kStateSize>. The derivatives at a limit are those of one branch
+// (Effect::AddStateDerivatives).
 #ifndef LACUNA_FEM_MEMORY_BRANCH_H_
 #define LACUNA_FEM_MEMORY_BRANCH_H_
 
@@ -123,12 +127,36 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
   void InitialState(const Body& body, Eigen::VectorXd* state) const override {
     *state = Eigen::VectorXd::Zero(StateSize(body));
   }
-  void AdvanceState(const Kinematics& at, const Eigen::VectorXd& parameters,
-                    Eigen::VectorXd* state_at_end) const override {
+  void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const override {
     CHECK_EQ(state_at_end->size(), StateSize(at.body));
-    const Law law(parameters, at.time_step);
-    WithNodesPerElement(
-        at.body, [&](auto nodes) { AdvanceState<decltype(nodes)::value>(at, law, state_at_end); });
+    const Law law(parameters_, at.time_step);
+    ForEachPoint(at, [&](int q, const Eigen::Matrix3d& F) {
+      StateOf(*state_at_end, q) = law.AtEnd(GreenLagrangeStrain(F), StateOf(at.state, q));
+    });
+  }
+
+  void AddStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& changes,
+                           Eigen::Ref<Eigen::MatrixXd> forces) const override {
+    WithNodesPerElement(at.body, [&](auto nodes) {
+      AddStateDerivatives<decltype(nodes)::value>(at, changes, forces);
+    });
+  }
+  void AdvanceStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& moved,
+                               Eigen::Ref<Eigen::MatrixXd> changes) const override {
+    WithNodesPerElement(at.body, [&](auto nodes) {
+      AdvanceStateDerivatives<decltype(nodes)::value>(at, moved, changes);
+    });
+  }
+  void AddStateByParameter(const Kinematics& at, int parameter,
+                           Eigen::Ref<Eigen::VectorXd> change) const override {
+    CHECK(parameter >= 0 && parameter < parameters_.size());
+    CHECK(!Card().parameters[parameter].setting);
+    if (parameter == 0) return;
+    const Law law(parameters_, at.time_step);
+    ForEachPoint(at, [&](int q, const Eigen::Matrix3d& F) {
+      StateOf(change, q) +=
+          law.AtEndByParameter(GreenLagrangeStrain(F), StateOf(at.state, q), parameter);
+    });
   }
 
  private:
@@ -136,8 +164,9 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
 
   double Modulus() const { return parameters_[0]; }  // m, Pa
 
-  // The internal variables of quadrature point q.
-  static State StateOf(const Eigen::VectorXd& states, int q) {
+  // The internal variables of quadrature point q in a vector of those of all points.
+  template <typename States>
+  static auto StateOf(States& states, int q) {
     return states.template segment<Law::kStateSize>(Eigen::Index{Law::kStateSize} * q);
   }
 
@@ -148,6 +177,17 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     Eigen::Matrix3d F[kPoints];
     FieldGradients<kNodes>(at.body, element, at.position, F);
     for (int p = 0; p < kPoints; ++p) visit(element * kPoints + p, F[p]);
+  }
+
+  // The same for all elements.
+  template <typename Visit>
+  static void ForEachPoint(const Kinematics& at, const Visit& visit) {
+    CHECK_EQ(at.state.size(), Eigen::Index{Law::kStateSize} * at.body.PointCount());
+    WithNodesPerElement(at.body, [&](auto nodes) {
+      ForEachElement(*at.body.schedule, [&](int element) {
+        ForEachPoint<decltype(nodes)::value>(at, element, visit);
+      });
+    });
   }
 
   // Adds the nodal forces −Σ w F S g_a with S = stress(strain, state).
@@ -217,13 +257,50 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
   }
 
   template <int kNodes>
-  void AdvanceState(const Kinematics& at, const Law& law, Eigen::VectorXd* state_at_end) const {
+  void AddStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& changes,
+                           Eigen::Ref<Eigen::MatrixXd> forces) const {
     CHECK_EQ(at.state.size(), StateSize(at.body));
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    const Law law(parameters_, at.time_step);
     ForEachElement(*at.body.schedule, [&](int element) {
-      ForEachPoint<kNodes>(at, element, [&](int q, const Eigen::Matrix3d& F) {
-        state_at_end->template segment<Law::kStateSize>(Eigen::Index{Law::kStateSize} * q) =
-            law.AtEnd(GreenLagrangeStrain(F), StateOf(at.state, q));
-      });
+      Eigen::Matrix3d F[kPoints], weighted[kPoints];
+      KelvinVector strain[kPoints];
+      FieldGradients<kNodes>(at.body, element, at.position, F);
+      for (int p = 0; p < kPoints; ++p) strain[p] = GreenLagrangeStrain(F[p]);
+      for (Eigen::Index k = 0; k < changes.cols(); ++k) {
+        const auto change = changes.col(k);
+        auto force = forces.col(k);
+        for (int p = 0; p < kPoints; ++p) {
+          const int q = element * kPoints + p;
+          weighted[p] =
+              Modulus() * at.body.weight[q] * F[p] *
+              FromKelvin(law.StressByState(strain[p], StateOf(at.state, q), StateOf(change, q)));
+        }
+        AddPointForces<kNodes>(at.body, element, weighted, force.data());
+      }
+    });
+  }
+
+  template <int kNodes>
+  void AdvanceStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& moved,
+                               Eigen::Ref<Eigen::MatrixXd> changes) const {
+    CHECK_EQ(at.state.size(), StateSize(at.body));
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    const Law law(parameters_, at.time_step);
+    ForEachElement(*at.body.schedule, [&](int element) {
+      Eigen::Matrix3d F[kPoints], by[kPoints];
+      KelvinVector strain[kPoints];
+      FieldGradients<kNodes>(at.body, element, at.position, F);
+      for (int p = 0; p < kPoints; ++p) strain[p] = GreenLagrangeStrain(F[p]);
+      for (Eigen::Index k = 0; k < changes.cols(); ++k) {
+        auto change = changes.col(k);
+        FieldGradients<kNodes>(at.body, element, moved.col(k).data(), by);
+        for (int p = 0; p < kPoints; ++p) {
+          const int q = element * kPoints + p;
+          StateOf(change, q) = law.AtEndBy(strain[p], StateOf(at.state, q),
+                                           StrainChange(F[p], by[p]), State(StateOf(change, q)));
+        }
+      }
     });
   }
 

@@ -169,8 +169,7 @@ MotionHistory StepEquation::Advance(const Eigen::VectorXd& position) const {
   }
   for (size_t j = 0; j < model_.effects.size(); ++j) {
     Eigen::VectorXd state = history_.effect_state[j];
-    const Effect& effect = *model_.effects[j];
-    if (state.size() > 0) effect.AdvanceState(At(end, j), effect.Parameters(), &state);
+    if (state.size() > 0) model_.effects[j]->AdvanceState(At(end, j), &state);
     next.effect_state.push_back(std::move(state));
   }
   return next;

@@ -4,7 +4,6 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -12,15 +11,10 @@
 #include "fem/cholmod_factor.h"
 #include "fem/elimination_order.h"
 #include "fem/held_components.h"
+#include "fem/unsymmetric_factor.h"
 
 namespace lacuna {
 namespace {
-
-// Internal variables are differentiated by differences of this share of their scale
-// (Effect::StateScale), together with strains of this size. For strains, rounding errors are then
-// 1e-10 of the value and truncation errors 1e-6 of its second derivative; most forces are linear in
-// the internal variables.
-constexpr double kDifference = 1e-6;
 
 Eigen::MatrixXd ScaledRows(const Eigen::VectorXd& node_weight, Eigen::MatrixXd columns) {
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
@@ -69,7 +63,6 @@ struct TangentLinear::Implementation {
   // acceleration.
   BlockMatrix tangent, skew, by_velocity, by_acceleration;
   bool has_skew = false, has_velocity = false, has_acceleration = false;
-  double element_size;  // m
   TangentLinearOptions options;
   // Sensitivities at the current time and one step earlier.
   Eigen::MatrixXd position, velocity, acceleration;
@@ -91,7 +84,6 @@ struct TangentLinear::Implementation {
         skew(model.body->pattern),
         by_velocity(model.body->pattern),
         by_acceleration(model.body->pattern),
-        element_size(std::cbrt(model.body->weight.sum() / model.body->ElementCount())),
         options(the_options) {
     const Eigen::Index size = 3 * model.body->NodeCount();
     position = velocity = acceleration = Eigen::MatrixXd::Zero(size, Count());
@@ -159,61 +151,33 @@ struct TangentLinear::Implementation {
       const Eigen::MatrixXd& change = inside[j].sensitivity;
       if (change.rows() == 0 || change.isZero(0)) continue;
       const Kinematics at = equation.At(end, j);
-      Eigen::VectorXd now = Eigen::VectorXd::Zero(end.position.size());
-      inside[j].effect->AddForce(at, &now);
-      ParallelFor(Count(), 1, [&](int64_t k) {
-        const double largest =
-            change.col(k).lpNorm<Eigen::Infinity>() / inside[j].effect->StateScale();
-        if (largest == 0) return;
-        const double h = kDifference / largest;
-        const Eigen::VectorXd more = at.state + h * change.col(k);
-        Eigen::VectorXd plus = Eigen::VectorXd::Zero(end.position.size());
-        inside[j].effect->AddForce(at.WithState(more), &plus);
-        right.col(k) += (plus - now) / h;
+      ForEachGroup([&](const Group& group) {
+        inside[j].effect->AddStateDerivatives(at, group.Of(change), group.Of(right));
       });
     }
   }
 
   // dz/dp at the end of the step, from the sensitivities there.
   void AdvanceMemories(const StepEquation& equation, const StepEquation::EndOfStep& end) {
-    for (Memory& memory : inside) {
+    for (size_t j = 0; j < inside.size(); ++j) {
+      Memory& memory = inside[j];
       if (memory.sensitivity.rows() == 0) continue;
-      const Kinematics at = equation.At(end, static_cast<size_t>(&memory - inside.data()));
-      Eigen::VectorXd now = at.state;
-      const Eigen::VectorXd parameters = memory.effect->Parameters();
-      memory.effect->AdvanceState(at, parameters, &now);
-      ParallelFor(Count(), 1, [&](int64_t k) { AdvanceMemory(at, parameters, now, k, &memory); });
+      const Kinematics at = equation.At(end, j);
+      ForEachGroup([&](const Group& group) {
+        memory.effect->AdvanceStateDerivatives(at, group.Of(position),
+                                               group.Of(memory.sensitivity));
+        for (Eigen::Index k = group.first; k < group.first + group.count; ++k)
+          if (perturbations[k].effect == memory.effect)
+            memory.effect->AddStateByParameter(at, perturbations[k].parameter,
+                                               memory.sensitivity.col(k));
+      });
     }
     ParallelFor(Count(), 1, [&](int64_t k) {
       if (outside[k].value.size() == 0) return;
       const Eigen::VectorXd before = outside[k].value;
       const Kinematics at = AtOutside(equation, end, k);
-      outside[k].effect->AdvanceState(at.WithState(before), outside[k].effect->Parameters(),
-                                      &outside[k].value);
+      outside[k].effect->AdvanceState(at.WithState(before), &outside[k].value);
     });
-  }
-
-  // One column of `memory`. `now` is its state at the end of the step.
-  void AdvanceMemory(const Kinematics& at, const Eigen::VectorXd& parameters,
-                     const Eigen::VectorXd& now, Eigen::Index k, Memory* memory) const {
-    const bool own = perturbations[k].effect == memory->effect;
-    const double own_value = own ? parameters[perturbations[k].parameter] : 1;
-    const double of_state =
-        memory->sensitivity.col(k).lpNorm<Eigen::Infinity>() / memory->effect->StateScale();
-    const double largest =
-        std::max({position.col(k).lpNorm<Eigen::Infinity>() / element_size, of_state,
-                  own ? 1 / std::max(std::abs(own_value), 1e-300) : 0.0});
-    if (largest == 0) return;
-    const double h = kDifference / largest;
-    const Eigen::VectorXd x = at.position + h * position.col(k);
-    const Eigen::VectorXd v = at.velocity + h * velocity.col(k);
-    const Eigen::VectorXd z = at.state + h * memory->sensitivity.col(k);
-    Eigen::VectorXd after = z, shifted = parameters;
-    if (own) shifted[perturbations[k].parameter] += h;
-    memory->effect->AdvanceState(
-        {at.body, x, v, at.acceleration, at.time, at.time_step, z, at.elasticity, at.has_inertia},
-        shifted, &after);
-    memory->sensitivity.col(k) = (after - now) / h;
   }
 
   // The tangents at the end of the step.
@@ -339,9 +303,22 @@ struct TangentLinear::Implementation {
     return std::nullopt;
   }
 
+  // The same with the factor of the whole tangent.
+  std::optional<Eigen::MatrixXd> SolveByWhole(const UnsymmetricFactor& whole, const Group& group) {
+    Eigen::MatrixXd wanted = group.Of(right);
+    held.ClearIn(wanted);
+    const Eigen::MatrixXd solution = whole.Solve(wanted);
+    Eigen::MatrixXd residual = wanted - tangent * solution;
+    if (has_skew) residual -= skew * solution;
+    held.ClearIn(residual);
+    const Eigen::RowVectorXd small = options.tolerance * wanted.colwise().norm();
+    if ((residual.colwise().norm().array() <= small.array()).all()) return solution;
+    return std::nullopt;
+  }
+
   // Adds the solution at the free nodes to `moved`. Uses the factor of the tangent's symmetric part
   // or, if that is not definite or the iteration does not converge, that of its convexified
-  // approximation.
+  // approximation. Where that does not converge either, it uses the factor of the whole tangent.
   bool Solve(const StepEquation& equation, const Eigen::VectorXd& at) {
     std::vector<char> solved(static_cast<size_t>((Count() + kGroup - 1) / kGroup), 0);
     const auto add = [&](const Group& group, const std::optional<Eigen::MatrixXd>& solution) {
@@ -355,10 +332,17 @@ struct TangentLinear::Implementation {
     if (is_solved()) return true;
     BlockMatrix stand_in(model.body->pattern);
     equation.Tangent(at, /*convexify=*/true, &stand_in);
-    if (!factor.Factorise(held.Decoupled(stand_in))) return false;
-    ForEachGroup([&](const Group& group) {
-      if (!solved[static_cast<size_t>(group.first / kGroup)]) add(group, SolveByStandIn(group));
-    });
+    const auto for_unsolved = [&](const auto& solve) {
+      ForEachGroup([&](const Group& group) {
+        if (!solved[static_cast<size_t>(group.first / kGroup)]) add(group, solve(group));
+      });
+    };
+    if (factor.Factorise(held.Decoupled(stand_in)))
+      for_unsolved([&](const Group& group) { return SolveByStandIn(group); });
+    if (is_solved()) return true;
+    const UnsymmetricFactor whole(held, tangent, has_skew ? &skew : nullptr);
+    if (whole.IsUsable())
+      for_unsolved([&](const Group& group) { return SolveByWhole(whole, group); });
     return is_solved();
   }
 
@@ -400,10 +384,9 @@ struct TangentLinear::Implementation {
 
     TangentLinearSummary summary;
     if (!Solve(equation, at)) {
-      summary.status = TangentLinearSummary::Status::kNotPositiveDefinite;
+      summary.status = TangentLinearSummary::Status::kSingular;
       summary.message = fmt::format(
-          "at {:.6g} s: the tangent is not positive definite, and the iteration with its "
-          "convexified approximation does not converge",
+          "at {:.6g} s: the tangent is singular, so that the motion has no derivatives there",
           equation.end_time());
       return summary;
     }

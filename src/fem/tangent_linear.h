@@ -44,7 +44,7 @@ struct Perturbation {
 };
 
 struct TangentLinearSummary {
-  enum class Status { kNotRun, kSolved, kNotPositiveDefinite };
+  enum class Status { kNotRun, kSolved, kSingular };
   Status status = Status::kNotRun;
   std::string message;
   bool IsUsable() const { return status == Status::kSolved; }
@@ -71,7 +71,7 @@ class TangentLinear {
   // Advances the sensitivities over a step from `before` to `position` (3n, m) that a Stepper has
   // found; for an equilibrium the scheme is kQuasiStatic and the step length 0, and the start of
   // the search for it has no influence. If the tangent cannot be solved, the status is
-  // kNotPositiveDefinite and the sensitivities are those before the step.
+  // kSingular and the sensitivities are those before the step.
   TangentLinearSummary Advance(const MotionHistory& before, TimeScheme scheme, double time_step,
                                const Eigen::VectorXd& position);
 

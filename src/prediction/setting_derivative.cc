@@ -44,14 +44,13 @@ class SettingDifference final : public CloneableEffect<SettingDifference> {
     effect_->InitialState(body, &of_one);
     *state = of_one.replicate(2, 1);
   }
-  void AdvanceState(const Kinematics& at, const Eigen::VectorXd&,
-                    Eigen::VectorXd* state_at_end) const override {
+  void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const override {
     const Eigen::Index half = at.state.size() / 2;
     if (half == 0) return;
     const Eigen::VectorXd of_more = at.state.head(half), of_less = at.state.tail(half);
     Eigen::VectorXd more(half), less(half);
-    more_->AdvanceState(at.WithState(of_more), more_->Parameters(), &more);
-    less_->AdvanceState(at.WithState(of_less), less_->Parameters(), &less);
+    more_->AdvanceState(at.WithState(of_more), &more);
+    less_->AdvanceState(at.WithState(of_less), &less);
     *state_at_end << more, less;
   }
 

@@ -147,7 +147,7 @@ TEST(PointForce, IsReadFromYaml) {
       "a.yaml");
   const std::vector<Config> items = config.Items("effects");
   Eigen::VectorXd expected(9);
-  expected << 0, 0, -2, 0.01, 0, 0, 0.005, 0.01, 1e9;
+  expected << 0, 0, -2, 0.01, 0, 0, 0.005, 0.01, 1e12;
   EXPECT_LT((MakeEffect(items[0])->Parameters() - expected).norm(), 1e-12);
   EXPECT_THROW(MakeEffect(items[1]), InputError);
   EXPECT_THROW(MakeEffect(items[2]), InputError);

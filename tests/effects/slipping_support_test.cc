@@ -58,7 +58,7 @@ TEST(SlippingSupport, HoldsAndSlidesAlongALoop) {
               1e-12 * kModulus * Surface() * kDistance)
         << shift;
     Eigen::VectorXd at_end(state.size());
-    support->AdvanceState(at, support->Parameters(), &at_end);
+    support->AdvanceState(at, &at_end);
     state = at_end;
   }
 }

@@ -16,8 +16,7 @@ class InertiaRecorder final : public TestEffect<InertiaRecorder> {
   static constexpr const char* kType = "inertia_recorder";
   Eigen::Index StateSize(const Body&) const override { return 1; }
   void InitialState(const Body&, Eigen::VectorXd* state) const override { state->setZero(); }
-  void AdvanceState(const Kinematics& at, const Eigen::VectorXd&,
-                    Eigen::VectorXd* state_at_end) const override {
+  void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const override {
     (*state_at_end)[0] = at.has_inertia ? 1 : 0;
   }
 };

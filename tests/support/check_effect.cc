@@ -64,7 +64,7 @@ MovingBody MakeMovingBody(const Effect& effect, int order, const std::array<int,
   const Eigen::VectorXd at_rest = moving.state;
   effect.AdvanceState({moving.body, before, motion.velocity, motion.acceleration,
                        options.time - options.time_step, options.time_step, at_rest},
-                      effect.Parameters(), &moving.state);
+                      &moving.state);
   return moving;
 }
 
@@ -86,6 +86,7 @@ class Checker {
     CheckTangentsAdd();
     CheckStandIn();
     CheckParameters();
+    CheckMemory();
     CheckElasticityDerivatives();
     CheckInvariances();
     CheckThreads();
@@ -264,6 +265,61 @@ class Checker {
               << "the null value of " << parameter.name << " weakens the effect";
         }
       }
+    }
+  }
+
+  // The internal variables at the end of the step.
+  static Eigen::VectorXd AtEnd(const Effect& effect, const Kinematics& at) {
+    Eigen::VectorXd state = at.state;
+    effect.AdvanceState(at, &state);
+    return state;
+  }
+
+  void CheckMemory() const {
+    if (moving_.state.size() == 0) return;
+    std::mt19937 random(options_.seed + 2);
+    const double scale = moving_.state.lpNorm<Eigen::Infinity>();
+    ASSERT_GT(scale, 0);
+    const Eigen::MatrixXd changes = scale * Random(moving_.state.size(), &random);
+    const Eigen::MatrixXd moved = 0.01 * Random(size_, &random);
+
+    Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(size_, 1);
+    effect_.AddStateDerivatives(At(moving_.motion), changes, forces);
+    const auto force = [&](double h) {
+      const Eigen::VectorXd state = moving_.state + h * changes;
+      Eigen::VectorXd sum = Eigen::VectorXd::Zero(size_);
+      effect_.AddForce(At(moving_.motion).WithState(state), &sum);
+      return sum;
+    };
+    EXPECT_LT(BestError(force, Eigen::VectorXd(forces), 1), options_.tolerance) << "∂f/∂z";
+
+    Eigen::MatrixXd at_end = changes;
+    effect_.AdvanceStateDerivatives(At(moving_.motion), moved, at_end);
+    const auto advanced = [&](double h) {
+      const Motion shifted = Shifted(moving_.motion, {.position = h}, moved);
+      const Eigen::VectorXd state = moving_.state + h * changes;
+      return AtEnd(effect_, At(shifted).WithState(state));
+    };
+    EXPECT_LT(BestError(advanced, Eigen::VectorXd(at_end), 1), options_.tolerance)
+        << "z at the end of the step";
+
+    const EffectCard& card = effect_.Card();
+    const Eigen::VectorXd values = effect_.Parameters();
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      if (card.parameters[k].setting) continue;
+      Eigen::VectorXd derivative = Eigen::VectorXd::Zero(moving_.state.size());
+      effect_.AddStateByParameter(At(moving_.motion), static_cast<int>(k), derivative);
+      const auto value = [&](double h) {
+        const auto other =
+            effect_.WithParameters(values + h * Eigen::VectorXd::Unit(values.size(), k));
+        return AtEnd(*other, At(moving_.motion));
+      };
+      const double unit = 0.1 * (values[k] != 0 ? std::abs(values[k]) : 1e-3);
+      if (derivative.norm() == 0)
+        EXPECT_EQ(value(1e-3 * unit), value(-1e-3 * unit)) << card.parameters[k].name;
+      else
+        EXPECT_LT(BestError(value, derivative, unit), options_.tolerance)
+            << "∂z/∂" << card.parameters[k].name;
     }
   }
 

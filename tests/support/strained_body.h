@@ -33,7 +33,7 @@ class StrainedBody {
     Eigen::VectorXd force = zero;
     effect_->AddForce(at, &force);
     Eigen::VectorXd end = state_;
-    effect_->AdvanceState(at, effect_->Parameters(), &end);
+    effect_->AdvanceState(at, &end);
     state_ = end;
     return force;
   }
