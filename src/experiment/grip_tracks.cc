@@ -7,18 +7,43 @@
 
 #include "core/error.h"
 #include "experiment/held_parts.h"
+#include "geometry/hermite.h"
 #include "geometry/rigid_fit.h"
 
 namespace lacuna {
 namespace {
 
-Eigen::Matrix3Xd Interpolated(const std::map<double, Eigen::Matrix3Xd>& places, double time) {
+using Places = std::map<double, Eigen::Matrix3Xd>;
+
+// The places at a time, with the velocity of the parabola through them and those before and behind.
+Knot<Eigen::Matrix3Xd> KnotOf(const Places& places, Places::const_iterator at) {
+  const auto velocity = [](Places::const_iterator from, Places::const_iterator to) {
+    return Eigen::Matrix3Xd((to->second - from->second) / (to->first - from->first));
+  };
+  const auto behind = std::next(at);
+  if (at == places.begin()) return {at->second, velocity(at, behind)};
+  const auto before = std::prev(at);
+  if (behind == places.end()) return {at->second, velocity(before, at)};
+  return {at->second, VelocityOfParabola(velocity(before, at), at->first - before->first,
+                                         velocity(at, behind), behind->first - at->first)};
+}
+
+// Along a smooth curve, as the path of a grip is (scan/time_series.h), and straight on behind the
+// last frame: a jump of the velocity would be a shock.
+Eigen::Matrix3Xd Interpolated(const Places& places, double time) {
   const auto after = places.lower_bound(time);
-  if (after == places.end()) return places.rbegin()->second;
+  if (after == places.end()) {
+    // The last time step ends behind the last frame, in which the grip need not have stopped.
+    const auto last = std::prev(places.end());
+    if (places.size() == 1) return last->second;
+    return last->second + (time - last->first) * KnotOf(places, last).velocity;
+  }
   if (after == places.begin() || after->first == time) return after->second;
   const auto before = std::prev(after);
-  const double share = (time - before->first) / (after->first - before->first);
-  return (1 - share) * before->second + share * after->second;
+  const double length = after->first - before->first;
+  return Interpolate(KnotOf(places, before), KnotOf(places, after), length,
+                     (time - before->first) / length)
+      .position;
 }
 
 }  // namespace

@@ -23,6 +23,15 @@ Knot<Matrix> Interpolate(const Knot<Matrix>& from, const Knot<Matrix>& to, doubl
               t * (3 * t - 2) * to.velocity};
 }
 
+// The velocity at the middle one of three points, of the parabola through them, from the mean
+// velocities in the two intervals and the lengths of these (s).
+template <typename Matrix>
+Matrix VelocityOfParabola(const Matrix& velocity_before, double length_before,
+                          const Matrix& velocity_behind, double length_behind) {
+  return (length_behind * velocity_before + length_before * velocity_behind) /
+         (length_before + length_behind);
+}
+
 }  // namespace lacuna
 
 #endif  // LACUNA_GEOMETRY_HERMITE_H_

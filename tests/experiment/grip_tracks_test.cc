@@ -70,6 +70,20 @@ TEST_F(CarriedByMarkers, MovesAsTheyDo) {
   EXPECT_LT((at_middle_ - motion_ * rest_).norm(), 1e-12);
 }
 
+// A jump of the velocity would be a shock in each frame.
+TEST_F(CarriedByMarkers, PassesAFrameWithoutAJumpOfItsVelocity) {
+  const Eigen::Vector3d shift(0.001, 0.002, -0.001);
+  Follow({"a", "b", "c", "d"}, recording_.markers.places.colwise() + shift);
+  const auto motion = model_.grips.front().motion;
+  constexpr double kLittle = 1e-6;  // s
+  for (const double frame : {1.0, 2.0}) {
+    const Eigen::Matrix3Xd before = (motion(frame) - motion(frame - kLittle)) / kLittle;
+    const Eigen::Matrix3Xd behind = (motion(frame + kLittle) - motion(frame)) / kLittle;
+    ASSERT_GT(before.norm(), 0.001);
+    EXPECT_LT((behind - before).norm(), 1e-4 * before.norm()) << frame;
+  }
+}
+
 TEST_F(CarriedByMarkers, DeformsWithThemWhereItMay) {
   const Eigen::Vector3d stretch(1, 1.2, 0.9);  // the markers lie in the plane x = 0
   const Eigen::Matrix3Xd wide = stretch.asDiagonal() * recording_.markers.places;
