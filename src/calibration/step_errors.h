@@ -26,6 +26,9 @@ struct StepErrors {
 
   Eigen::VectorXd to_limit;   // with infinitely short steps
   Eigen::VectorXd departure;  // of the two halvings from the factor p
+
+  // One standard deviation of what is not known about the change to the limit.
+  Eigen::VectorXd Unknown() const { return kDepartureDeviation * departure; }
 };
 
 // `misfit` is that at `values`. Nothing if a prediction with a shorter step fails. Throws

@@ -1,7 +1,5 @@
 #include "diagnosis/diagnosis.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -17,16 +15,13 @@
 #include "diagnosis/refit_comparison.h"
 #include "diagnosis/refits.h"
 #include "diagnosis/refitted_ranking.h"
+#include "diagnosis/step_refinement.h"
 #include "diagnosis/thresholds.h"
 #include "diagnosis/variant_refit.h"
 #include "diagnosis/verdict.h"
 
 namespace lacuna {
 namespace {
-
-// A halving of the time step divides the evidence of the unknown part of its error by about this
-// number: an error of second order becomes a quarter, and evidence grows with its square.
-constexpr double kEvidencePerHalving = 16;
 
 // What all steps of a diagnosis share.
 struct DiagnosisSetting {
@@ -63,23 +58,6 @@ std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
                         whole.scene.ForFirstFrames(whole.misfit.parts, early.recordings))
                 .effects;
   return found;
-}
-
-// By how many halvings the time step is too long: 0 unless there is evidence for an effect which
-// the unknown part of the step's error could explain. A step whose unknown error is smaller than
-// that of the elements is short enough: what remains unknown is then that of the elements, however
-// short the step.
-int HalvingsNeeded(const EffectRanking& ranking) {
-  double of_step = 0, of_others = 0;
-  for (const ScoredNuisance& nuisance : ranking.nuisances)
-    (nuisance.candidate.card.shrinks_with_time_step ? of_step : of_others) +=
-        nuisance.uncertain_evidence;
-  const double tolerated = std::max(kThresholds.refit.uncertain_step_evidence, of_others);
-  if (!(of_step > tolerated) || ranking.effects.empty() ||
-      ranking.effects.front().score.evidence <= kThresholds.refit.least_evidence)
-    return 0;
-  return std::max(1, static_cast<int>(std::floor(std::log(of_step / tolerated) /
-                                                 std::log(kEvidencePerHalving))));
 }
 
 // The effects whose power is simulated: those that were refitted, the most probable first.
@@ -160,50 +138,21 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   return diagnosis;
 }
 
-Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                               int halvings, const DiagnosisSetting& setting,
-                               const SceneColumns& known);
-
-// Fits and diagnoses the study with a time step halved `now` times, and up to `most` times if that
-// is not enough; nothing if it cannot be fitted. `scene`: of the study's ranking.
-std::optional<Diagnosis> DiagnoseWithShorterStep(const CalibrationProblem& problem,
-                                                 const Eigen::VectorXd& fitted, int now, int most,
-                                                 const DiagnosisSetting& setting,
-                                                 const SceneColumns& scene) {
-  PredictionStudy study = problem.WithEstimatedNoise();
-  study.time_step = std::ldexp(study.time_step, -now);
-  setting.progress->Begin("time step", 0);
-  setting.progress->End(
-      fmt::format("{:.3g} ms, because the error of steps of {:.3g} ms could look like an effect",
-                  1e3 * study.time_step, 1e3 * problem.study().time_step));
-  const CalibrationProblem shorter(study, problem.body()->mesh);
-  const Calibration fit = RefineFit(shorter, fitted, setting.progress);
-  if (fit.parameters.size() != fitted.size()) return std::nullopt;
-  return DiagnoseWithHalvings(shorter, fit.parameters, most - now, setting, scene.ForOtherStep());
-}
-
-Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                               int halvings, const DiagnosisSetting& setting,
-                               const SceneColumns& known) {
-  EffectRanking ranking =
-      RankEffects(problem, fitted, setting.progress, setting.options.without, known);
-  if (problem.study().chooses_time_step)
-    if (const int now = std::min(halvings, HalvingsNeeded(ranking)); now > 0)
-      if (auto diagnosis =
-              DiagnoseWithShorterStep(problem, fitted, now, halvings, setting, ranking.scene))
-        return *std::move(diagnosis);
-  return DiagnoseRanked(problem, fitted, std::move(ranking), setting);
-}
-
 }  // namespace
 
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
                    const DiagnosisOptions& options, Progress* progress, FitStore* kept,
                    const std::optional<OtherMesh>& other_mesh) {
+  const DiagnosisSetting setting{options, progress, kept};
   SceneColumns known;
   known.other_mesh = other_mesh;
-  return DiagnoseWithHalvings(problem, fitted, kThresholds.refit.most_halvings,
-                              {options, progress, kept}, known);
+  EffectRanking ranking = RankEffects(problem, fitted, progress, options.without, known);
+  std::optional<ShorterStep> shorter;
+  if (problem.study().chooses_time_step) shorter = ShortenStep(problem, fitted, ranking, progress);
+  if (!shorter) return DiagnoseRanked(problem, fitted, std::move(ranking), setting);
+  ranking = RankEffects(*shorter->problem, shorter->values, progress, options.without,
+                        ranking.scene.ForOtherStep());
+  return DiagnoseRanked(*shorter->problem, shorter->values, std::move(ranking), setting);
 }
 
 DecisionInput FirstOrderInput(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,

@@ -34,7 +34,7 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   candidate.columns << errors->to_limit, errors->departure;
   candidate.priors = {{1, StepErrors::kLimitDeviation, false},
                       {0, StepErrors::kDepartureDeviation, false}};
-  candidate.unknown = StepErrors::kDepartureDeviation * errors->departure;
+  candidate.unknown = errors->Unknown();
   return candidate;
 }
 

@@ -68,7 +68,8 @@ struct RefitThresholds {
   // Higher: the motion may have lost the phase already. Lower: less data.
   double early_share = 0.25;
   // A time step is halved, so many times at most, where the unknown part of its error could
-  // contribute this evidence to an effect, and more than the unknown part of the mesh's error.
+  // contribute this evidence to an effect, and more than what is tolerated in any case
+  // (step_refinement.h).
   // Higher: faster, and more doubt about small effects.
   int most_halvings = 3;
   double uncertain_step_evidence = 1;
