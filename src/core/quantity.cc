@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
@@ -29,6 +30,7 @@ constexpr std::array kPrefixable = {
     Unit{"N", 1, kForce},           Unit{"Pa", 1, kPressure}, Unit{"Hz", 1, kRate},
     Unit{"K", 1, kTemperature},     Unit{"rad", 1, kAngle},   Unit{"J", 1, {2, 1, -2, 0, 0}},
     Unit{"W", 1, {2, 1, -3, 0, 0}}, Unit{"l", 1e-3, kVolume}, Unit{"bar", 1e5, kPressure},
+    Unit{"gf", 9.80665e-3, kForce}, Unit{"sec", 1, kTime},    Unit{"Nm", 1, {2, 1, -2, 0, 0}},
 };
 constexpr std::array kUnprefixed = {
     Unit{"deg", std::numbers::pi / 180, kAngle},
@@ -39,6 +41,12 @@ constexpr std::array kUnprefixed = {
     Unit{"%", 0.01, kDimensionless},
     Unit{"t", 1e3, kMass},
     Unit{"psi", 6894.757293168361, kPressure},
+    Unit{"kp", 9.80665, kForce},
+    Unit{"dyn", 1e-5, kForce},
+    Unit{"lbf", 4.4482216152605, kForce},
+    Unit{"lb", 0.45359237, kMass},
+    Unit{"lbs", 0.45359237, kMass},
+    Unit{"Nmm", 1e-3, {2, 1, -2, 0, 0}},
     Unit{"1", 1, kDimensionless},
 };
 struct Prefix {
@@ -46,8 +54,9 @@ struct Prefix {
   double factor;
 };
 constexpr std::array kPrefixes = {
-    Prefix{"n", 1e-9}, Prefix{"u", 1e-6}, Prefix{"µ", 1e-6}, Prefix{"μ", 1e-6}, Prefix{"m", 1e-3},
-    Prefix{"c", 1e-2}, Prefix{"d", 1e-1}, Prefix{"k", 1e3},  Prefix{"M", 1e6},  Prefix{"G", 1e9},
+    Prefix{"n", 1e-9}, Prefix{"u", 1e-6}, Prefix{"µ", 1e-6}, Prefix{"μ", 1e-6},
+    Prefix{"m", 1e-3}, Prefix{"c", 1e-2}, Prefix{"d", 1e-1}, Prefix{"da", 10},
+    Prefix{"k", 1e3},  Prefix{"M", 1e6},  Prefix{"G", 1e9},
 };
 
 const Unit* FindSymbol(std::string_view symbol, bool prefixable_only) {
@@ -71,6 +80,12 @@ Unit LookUp(std::string_view symbol) {
   throw std::invalid_argument(fmt::format("unknown unit \"{}\"", symbol));
 }
 
+bool DiffersInCaseOnly(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
+    return std::tolower(x) == std::tolower(y);
+  });
+}
+
 // Reads a product of units such as "kg/m^3" or "Pa s" factor by factor.
 class UnitReader {
  public:
@@ -82,7 +97,7 @@ class UnitReader {
     std::string_view before;  // the operator before the next unit
     for (SkipSpace(); !rest_.empty(); SkipSpace()) {
       std::string_view found;
-      for (const std::string_view operation : {"/", "*", "·"})
+      for (const std::string_view operation : {"/", "*", "·", "."})
         if (found.empty() && Take(operation)) found = operation;
       if (!found.empty()) {
         RequireNoOperator(before);
@@ -124,8 +139,8 @@ class UnitReader {
     while (end < rest_.size()) {
       const std::string_view tail = rest_.substr(end);
       const char c = tail.front();
-      if (std::isspace(static_cast<unsigned char>(c)) || c == '/' || c == '*' || c == '^' ||
-          tail.starts_with("·") || tail.starts_with("²") || tail.starts_with("³") ||
+      if (std::isspace(static_cast<unsigned char>(c)) || c == '/' || c == '*' || c == '.' ||
+          c == '^' || tail.starts_with("·") || tail.starts_with("²") || tail.starts_with("³") ||
           (end > 0 && (std::isdigit(static_cast<unsigned char>(c)) || c == '-'))) {
         break;
       }
@@ -253,8 +268,29 @@ MeasuredQuantity ParseAnyQuantity(std::string_view text) {
   }
 }
 
+std::vector<std::string> UnitsInAnyCase(std::string_view symbol, const Dimension& dimension) {
+  std::vector<std::string> found;
+  const auto add = [&](const Unit& unit, std::string_view prefix) {
+    const std::string whole = std::string(prefix) + std::string(unit.symbol);
+    if (unit.dimension.SameAs(dimension) && DiffersInCaseOnly(whole, symbol))
+      found.push_back(whole);
+  };
+  for (const Unit& unit : kUnprefixed) add(unit, "");
+  for (const Unit& unit : kPrefixable) {
+    add(unit, "");
+    for (const Prefix& prefix : kPrefixes) add(unit, prefix.symbol);
+  }
+  return found;
+}
+
 std::string DurationText(double seconds) {
   return seconds < 1 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
+}
+
+std::string TimeText(double seconds) {
+  constexpr double kLong = 1000;
+  if (std::abs(seconds) < kLong) return fmt::format("{:g} s", seconds);
+  return fmt::format("{:.15g} s", std::round(1e3 * seconds) / 1e3);
 }
 
 }  // namespace lacuna

@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lacuna {
 
@@ -41,8 +42,8 @@ inline constexpr Dimension kTemperature{0, 0, 0, 1, 0, "a temperature", "20 K", 
 inline constexpr Dimension kAngle{0, 0, 0, 0, 1, "an angle", "30 deg", "rad"};
 
 // Returns the SI value of `text`, a number with a unit. Products of units are written with a space,
-// '*' or '·', quotients with '/' and powers with '^'. A number without a unit is accepted only for
-// a dimensionless quantity, and 0 for any, because it is the same in every unit. Throws
+// '*', '·' or '.', quotients with '/' and powers with '^'. A number without a unit is accepted only
+// for a dimensionless quantity, and 0 for any, because it is the same in every unit. Throws
 // std::invalid_argument with a message that states what was expected if `text` is not a finite
 // number, or if its unit is unknown or has another dimension.
 double ParseQuantity(std::string_view text, const Dimension& expected);
@@ -55,8 +56,16 @@ struct MeasuredQuantity {
 // Throws std::invalid_argument for text that is not a number or has an unknown unit.
 MeasuredQuantity ParseAnyQuantity(std::string_view text);
 
+// The symbols of units of this dimension, with their prefixes, that differ from `symbol` in the
+// case of their letters at most: kN for "KN", mN and MN for "mn".
+std::vector<std::string> UnitsInAnyCase(std::string_view symbol, const Dimension& dimension);
+
 // A length of time in s to three digits, as "2.5 ms" or, from one second on, "1.5 s".
 std::string DurationText(double seconds);
+
+// A point in time in s, to six digits or, from 1000 s on, where the origin may be that of a
+// calendar, to a millisecond: "0.25 s", "1700000000.25 s".
+std::string TimeText(double seconds);
 
 }  // namespace lacuna
 

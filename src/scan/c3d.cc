@@ -138,8 +138,9 @@ std::vector<std::string> Texts(const Bytes& bytes, const Parameter& parameter, s
 struct PointFormat {
   Eigen::Index marker_count = 0;
   Eigen::Index frame_count = 0;
-  double scale = 0;  // negative: the data are floating-point numbers
-  double rate = 0;   // Hz
+  double scale = 0;       // negative: the data are floating-point numbers
+  double rate = 0;        // Hz; 0: neither the header nor POINT:RATE gives one
+  double other_rate = 0;  // Hz, of POINT:RATE where it contradicts `rate`; 0: it does not
   size_t data = 0;
   size_t analog_per_frame = 0;
 };
@@ -177,13 +178,24 @@ Eigen::Index FramesHeld(const Bytes& bytes, const PointFormat& format) {
   return static_cast<Eigen::Index>((bytes.Size() - format.data) / FrameSize(format));
 }
 
+// `parameter`: POINT:RATE, null where it is absent.
+void ReadRate(const Bytes& bytes, const Parameter* parameter, PointFormat* format) {
+  const auto as_rate = [](double rate) { return rate > 0 && std::isfinite(rate) ? rate : 0; };
+  const double in_header = as_rate(bytes.Real(20));
+  const double in_parameter =
+      parameter != nullptr && parameter->type == 4 ? as_rate(bytes.Real(parameter->data)) : 0;
+  format->rate = in_header > 0 ? in_header : in_parameter;
+  const Eigen::Index intervals = std::max<Eigen::Index>(format->frame_count, 2) - 1;
+  if (in_parameter > 0 && RatesDiffer(in_parameter, format->rate, static_cast<size_t>(intervals)))
+    format->other_rate = in_parameter;
+}
+
 PointFormat ReadFormat(const Bytes& bytes, const std::map<std::string, Parameter>& parameters) {
   PointFormat format;
   const int first = bytes.Word(6), last = bytes.Word(8);
   format.marker_count = bytes.Word(2);
   format.frame_count = last - first + 1;
   format.scale = bytes.Real(12);
-  format.rate = bytes.Real(20);
   format.data = bytes.Word(16);
   format.analog_per_frame = bytes.Word(4);
   // The 16-bit frame numbers of the header do not suffice for long recordings; parameters do.
@@ -207,7 +219,7 @@ PointFormat ReadFormat(const Bytes& bytes, const std::map<std::string, Parameter
   if (format.marker_count == 0) bytes.Fail("holds no 3-D points");
   if (format.data < 2) bytes.Fail("does not state where its data begin");
   if (!std::isfinite(format.scale) || format.scale == 0) bytes.Fail("has no point scale factor");
-  if (!(format.rate > 0 && std::isfinite(format.rate))) bytes.Fail("has no frame rate");
+  ReadRate(bytes, find("POINT:RATE"), &format);
   format.data = (format.data - 1) * kBlock;
   // Programs that cut a recording may leave the fields of the trial as they were, so they count
   // only where the header is at its limit or the file is as long as they say.
@@ -255,7 +267,7 @@ std::vector<std::string> ReadNames(const Bytes& bytes,
 
 }  // namespace
 
-MarkerTracks ReadC3d(const std::filesystem::path& file) {
+MarkerTracks ReadC3d(const std::filesystem::path& file, FileTimes times) {
   Bytes bytes(file, ReadFilledFile(file));
   if (bytes.Size() < kBlock || bytes.Byte(1) != kKey || bytes.Byte(0) < 2) {
     bytes.Fail("is not a C3D file");
@@ -297,8 +309,16 @@ MarkerTracks ReadC3d(const std::filesystem::path& file) {
     const std::vector<std::string> texts = Texts(bytes, units->second, 1);
     if (!texts.empty()) tracks.length_unit = texts[0];
   }
-  tracks.times =
-      Eigen::VectorXd::LinSpaced(format.frame_count, 0, format.frame_count - 1.0) / format.rate;
+  if (format.rate == 0 && times == FileTimes::kUsed)
+    bytes.Fail("has no frame rate; give `rate: … Hz` under `frames` in recording.yaml");
+  if (format.other_rate > 0 && times == FileTimes::kUsed)
+    tracks.warnings.push_back(fmt::format(
+        "{}: its header states {:g} Hz and POINT:RATE {:g} Hz; the former is used, which "
+        "`rate` in recording.yaml replaces",
+        file.string(), format.rate, format.other_rate));
+  if (format.rate > 0)
+    tracks.times =
+        Eigen::VectorXd::LinSpaced(format.frame_count, 0, format.frame_count - 1.0) / format.rate;
   for (Eigen::Index frame = 0; frame < format.frame_count; ++frame) {
     Eigen::Matrix3Xd positions(3, format.marker_count);
     for (Eigen::Index marker = 0; marker < format.marker_count; ++marker) {

@@ -16,10 +16,14 @@ Eigen::Isometry3d ReadPose(const Config& config, const std::string& key, double 
   using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
   const Eigen::Matrix4d matrix = Eigen::Map<const RowMajor>(numbers.data());
   const auto rotation = RotationUpToRounding(matrix.topLeftCorner<3, 3>());
-  if (!rotation || matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    config.Fail(key,
-                "is not a rigid motion: an orthonormal 3 × 3 block of determinant 1, a "
-                "translation, and the last row 0 0 0 1");
+  const Eigen::RowVector4d last(0, 0, 0, 1);
+  if (!rotation || matrix.row(3) != last) {
+    const bool is_transposed = rotation && matrix.col(3) == last.transpose();
+    config.Fail(key, is_transposed
+                         ? "has its numbers column by column; write the matrix row by row, "
+                           "with the last row 0 0 0 1"
+                         : "is not a rigid motion: an orthonormal 3 × 3 block of "
+                           "determinant 1, a translation, and the last row 0 0 0 1");
   }
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = *rotation;

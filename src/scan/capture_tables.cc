@@ -29,10 +29,10 @@ bool BeginsWith(std::string_view text, std::string_view begin) {
   throw InputError({file.string(), static_cast<int>(row) + 1, 1}, message);
 }
 
-// The number in a field; NaN for empty fields and "NULL".
+// The number in a field; NaN where it is empty or says that there is none.
 double NumberIn(const std::filesystem::path& file, std::string_view line, size_t row,
                 std::string_view field) {
-  if (field == "NULL") return kNotSeen;
+  if (IsMissing(field)) return kNotSeen;
   const std::optional<double> value = ParseNumber(field);
   if (!value)
     throw InputError({file.string(), static_cast<int>(row) + 1,
@@ -87,12 +87,9 @@ void AddRow(const std::filesystem::path& file, std::string_view line, size_t row
   tracks->positions.push_back(std::move(positions));
 }
 
-void SetTimes(const std::filesystem::path& file, const std::vector<double>& times, double rate,
-              FileTimes use, MarkerTracks* tracks) {
-  if (use == FileTimes::kReplaced || times.empty()) return;
-  tracks->times =
-      Eigen::Map<const Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(times.size()));
-  CheckTimes(file, tracks->times, rate);
+// Times of the rows; empty: the file has none.
+Eigen::Map<const Eigen::VectorXd> AsTimes(const std::vector<double>& times) {
+  return {times.data(), static_cast<Eigen::Index>(times.size())};
 }
 
 // "key,value,key,value,…", the first line of Motive.
@@ -194,7 +191,7 @@ MarkerTracks ReadQualisysTsv(const std::filesystem::path& file, FileTimes use) {
     throw InputError({file.string()}, fmt::format("holds {} frames where NO_OF_FRAMES says {}",
                                                   tracks.positions.size(), announced));
   if (tracks.positions.empty()) throw InputError({file.string()}, "holds no frame");
-  SetTimes(file, times, rate, use, &tracks);
+  SetTimes(file, AsTimes(times), rate, use, &tracks);
   return tracks;
 }
 
@@ -240,8 +237,8 @@ MarkerTracks ReadMotiveCsv(const std::filesystem::path& file, FileTimes use) {
   }
   if (tracks.positions.empty()) throw InputError({file.string()}, "holds no frame");
   const auto rate = pairs.find("Export Frame Rate");
-  SetTimes(file, times, rate == pairs.end() ? 0 : ParseNumber(rate->second).value_or(0), use,
-           &tracks);
+  SetTimes(file, AsTimes(times), rate == pairs.end() ? 0 : ParseNumber(rate->second).value_or(0),
+           use, &tracks);
   return tracks;
 }
 

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
 
 #include "core/error.h"
+#include "core/quantity.h"
 #include "core/text_file.h"
 #include "scan/table_numbers.h"
 
@@ -106,16 +108,96 @@ char FindDelimiter(std::string_view line, std::string_view rest) {
   return has('\t') ? '\t' : ' ';
 }
 
-// Whether `line` is a title above the names of the columns, which `rest` begins with.
-bool IsTitle(std::string_view line, std::string_view rest) {
-  if (line.find_first_of(kDelimiters) != std::string_view::npos ||
-      AreNumbers(SplitFields(line, ' ')))
+// The length of the title above the names of the columns, with which `text` begins; 0: it has none.
+size_t LengthOfTitle(std::string_view text) {
+  constexpr int kMostLines = 8;
+  size_t at = 0;
+  for (int row = 0; row < kMostLines && at < text.size(); ++row) {
+    const size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = Trim(text.substr(at, end - at));
+    if (line.find_first_of(kDelimiters) != std::string_view::npos) {
+      if (row == 0 || line.front() == '#') return 0;
+      return AreNumbers(SplitFields(line, FindDelimiter(line, text.substr(end)))) ? 0 : at;
+    }
+    const std::vector<std::string_view> words = SplitFields(line, ' ');
+    if (AreNumbers(words) && (row == 0 || words.size() > 1)) return 0;
+    at = std::min(end + 1, text.size());
+  }
+  return 0;
+}
+
+// Whether `line` is the number of the points in the rows below it, which `rest` begins with.
+bool IsCount(std::string_view line, std::string_view rest) {
+  const std::optional<double> count = ParseNumber(line);
+  if (!count || !(*count >= 1) || *count != std::floor(*count)) return false;
+  const std::string_view next = NextRow(rest);
+  return SplitFields(next, FindDelimiter(next, "")).size() >= 3;
+}
+
+std::string_view WithoutBrackets(std::string_view text) {
+  const bool has_brackets = text.size() > 2 && ((text.front() == '(' && text.back() == ')') ||
+                                                (text.front() == '[' && text.back() == ']'));
+  return has_brackets ? Trim(text.substr(1, text.size() - 2)) : text;
+}
+
+bool IsUnit(std::string_view text) {
+  try {
+    ParseAnyQuantity("1 " + std::string(text));
+  } catch (const std::invalid_argument&) {
     return false;
-  const size_t end = std::min(rest.find('\n'), rest.size());
-  const std::string_view next = Trim(rest.substr(0, end));
-  if (next.find_first_of(kDelimiters) == std::string_view::npos || next.front() == '#')
+  }
+  return !text.empty();
+}
+
+// The names of columns that two lines give: in groups, and in them. Empty where the first line
+// groups no columns, i.e. has neither a missing name nor the same name twice side by side.
+std::vector<std::string> GroupedNames(const std::vector<std::string>& groups,
+                                      const std::vector<std::string_view>& own) {
+  std::vector<std::string> names;
+  std::string group;
+  bool has_groups = false;
+  for (size_t k = 0; k < groups.size(); ++k) {
+    const bool continues = k > 0 && (groups[k].empty() || groups[k] == groups[k - 1]);
+    has_groups = has_groups || ((continues || groups[k].empty()) && !own[k].empty());
+    if (!groups[k].empty()) group = groups[k];
+    const std::string& own_group = own[k].empty() ? groups[k] : group;
+    names.push_back(own_group + (own_group.empty() || own[k].empty() ? "" : "_") +
+                    std::string(own[k]));
+  }
+  return has_groups ? names : std::vector<std::string>();
+}
+
+// Takes a line below the names that holds no number for the second line of the names of groups, or
+// for the units, if one of its entries is a unit or in brackets. Returns whether it is one of
+// these.
+bool TakeSecondHeader(const std::vector<std::string_view>& fields, DelimitedTable* table) {
+  if (table->header.empty() || !table->units.empty() || fields.size() != table->header.size() ||
+      AreNumbers(fields))
     return false;
-  return !AreNumbers(SplitFields(next, FindDelimiter(next, rest.substr(end))));
+  int units = 0, words = 0;
+  for (const std::string_view field : fields) {
+    const std::optional<double> number = ParseDecimal(field);
+    if (number && std::isfinite(*number)) return false;
+    if (number) continue;
+    ++(WithoutBrackets(field) != field || IsUnit(field) ? units : words);
+  }
+  if (words > 0) {
+    const std::vector<std::string> names = GroupedNames(table->header, fields);
+    if (!names.empty()) {
+      table->header = names;
+      return true;
+    }
+  }
+  if (units == 0) return false;
+  for (const std::string_view field : fields) table->units.emplace_back(WithoutBrackets(field));
+  return true;
+}
+
+// Whether a text that is no number looks like a date or a time of day.
+bool IsDate(std::string_view text) {
+  const auto count = [text](char c) { return std::count(text.begin(), text.end(), c); };
+  return !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) &&
+         (count(':') > 0 || count('-') > 1 || count('/') > 1 || count('.') > 1);
 }
 
 // Notes a header in which most entries are numbers with decimals: its line may be a row of data of
@@ -251,6 +333,22 @@ ColumnName SplitColumnName(const std::string& header) {
           header.substr(open + 1, close == std::string::npos ? close : close - open - 1)};
 }
 
+std::string UnitOfColumn(const DelimitedTable& table, Eigen::Index column) {
+  const size_t k = static_cast<size_t>(column);
+  if (k < table.units.size() && !table.units[k].empty()) return table.units[k];
+  return SplitColumnName(table.header[k]).unit;
+}
+
+std::string LengthUnitOfColumn(const DelimitedTable& table, Eigen::Index column) {
+  std::string unit = UnitOfColumn(table, column);
+  try {
+    ParseQuantity("1 " + unit, kLength);
+  } catch (const std::invalid_argument&) {
+    return "";
+  }
+  return unit;
+}
+
 std::string ReadFilledFile(const std::filesystem::path& file) {
   std::string content = ReadWholeFile(file);
   if (content.empty()) throw InputError({file.string()}, "is empty");
@@ -287,10 +385,11 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
                     may_be_decimal ? "; decimal commas need another delimiter, such as ;" : ""));
   };
   for (size_t at = 0; at < content.size();) {
-    const size_t end = std::min(content.find('\n', at), content.size());
-    const std::string_view line(content.data() + at, end - at);
+    const size_t begin = at, end = std::min(content.find('\n', at), content.size());
+    std::string_view line(content.data() + at, end - at);
     at = end + 1;
     ++line_number;
+    const std::string_view rest = std::string_view(content).substr(std::min(at, content.size()));
     if (const auto declared = DeclaredDelimiter(line); declared && line_number == 1) {
       delimiter = *declared;
       continue;
@@ -310,12 +409,17 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
       continue;
     }
     if (width == 0 && Trim(line).substr(0, 3) == "***") continue;
-    if (delimiter == 0 &&
-        IsTitle(Trim(line), std::string_view(content).substr(std::min(at, content.size()))))
-      continue;
-    if (delimiter == 0)
-      delimiter =
-          FindDelimiter(Trim(line), std::string_view(content).substr(std::min(at, content.size())));
+    if (table.line.empty() && IsCount(Trim(line), rest)) continue;
+    if (delimiter == 0) {
+      const std::string_view from = std::string_view(content).substr(begin);
+      if (const size_t title = LengthOfTitle(from); title > 0) {
+        at = begin + title;
+        line_number += static_cast<int>(std::count(from.begin(), from.begin() + title, '\n')) - 1;
+        continue;
+      }
+      if (Trim(line).starts_with("//")) line.remove_prefix(line.find("//") + 2);
+      delimiter = FindDelimiter(Trim(line), rest);
+    }
     const std::vector<std::string_view> fields = SplitFields(line, delimiter);
     if (width == 0) {
       width = fields.size();
@@ -330,6 +434,7 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
         continue;
       }
     }
+    if (table.line.empty() && TakeSecondHeader(fields, &table)) continue;
     if (AreEmpty(fields)) {
       empty_rows.push_back({line_number, fields.size()});
       continue;
@@ -346,7 +451,10 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
       const std::optional<double> value = ParseDecimal(field);
       if (!value)
         throw InputError({file.string(), line_number, column},
-                         fmt::format("got \"{}\"; expected a number", field));
+                         fmt::format("got \"{}\"; expected a number{}", field,
+                                     IsDate(field) ? ", such as seconds since the first row: dates "
+                                                     "and times of day are not read"
+                                                   : ""));
       commas.Add(field, line_number, column);
       entries.push_back(*value);
     }

@@ -14,21 +14,25 @@ namespace lacuna {
 // Lines starting with '#', empty lines and, above the table, lines starting with "***" are skipped,
 // and the stage of GOM software, a table of its own (kStageHeader). Rows at the end of the table
 // whose entries are all empty, as spreadsheet programs leave them, are no rows.
-// A first line that is a title is skipped, too: one without delimiter above a line of names with
-// delimiters. The first line is the header when one of its entries is neither a number nor empty.
-// The delimiter is the one that a first line "sep=;" declares, and otherwise the first of ';', ','
-// and tab that occurs in the first line outside of quotes, or else any run of blanks; a tab comes
-// first where it alone divides the line of names and the row below into as many entries. Where the
-// delimiter is not ',', and in quotes, numbers may have a decimal comma (DecimalCommas). Two quotes
-// in the quotes of a name stand for one. A byte order mark is not part of the first entry
-// (ReadTextFile).
+// A title is skipped, too: lines without delimiter, the first of which is no row of numbers, above
+// a line of names with delimiters; and a line that holds the number of the rows below it alone. The
+// first line is the header when one of its entries is neither a number nor empty; "//" in front of
+// it is no part of a name. The line below it may hold units, as "(s)" or "s", or a second name:
+// where names are missing or repeated in the first, as in ",m0,,,m1,," above "t,x,y,z,x,y,z", the
+// name of a column is that of its group and its own, m0_x. The delimiter is the one that a first
+// line "sep=;" declares, and otherwise the first of ';', ',' and tab that occurs in the first line
+// outside of quotes, or else any run of blanks; a tab comes first where it alone divides the line
+// of names and the row below into as many entries. Where the delimiter is not ',', and in quotes,
+// numbers may have a decimal comma (DecimalCommas). Two quotes in the quotes of a name stand for
+// one. A byte order mark is not part of the first entry (ReadTextFile).
 inline constexpr std::string_view kStageHeader = "stage;index;relative_time;date";
 
 struct DelimitedTable {
   std::filesystem::path file;
   std::vector<std::string> header;  // names of the columns; empty if the file has none
-  Eigen::MatrixXd values;           // rows × columns; NaN for an empty entry and for "nan"
-  std::vector<int> line;            // line of the file of each row, from 1
+  std::vector<std::string> units;  // in the line below them, without brackets; empty if it has none
+  Eigen::MatrixXd values;          // rows × columns; NaN for an empty entry and for "nan"
+  std::vector<int> line;           // line of the file of each row, from 1
   // Entries of the last comment above the first row, if it has as many as a row; empty if not.
   std::vector<std::string> commented_header;
   std::vector<std::string> comments;  // above the first row, without their marks
@@ -55,6 +59,12 @@ struct ColumnName {
   std::string name, unit;
 };
 ColumnName SplitColumnName(const std::string& header);
+
+// The unit that a table with names gives for a column, in the line below the names or else in
+// brackets in the name; empty where it gives none.
+std::string UnitOfColumn(const DelimitedTable& table, Eigen::Index column);
+// The same where that is a unit of length; empty where it is another remark.
+std::string LengthUnitOfColumn(const DelimitedTable& table, Eigen::Index column);
 
 // The delimiter that a line such as "sep=;" declares, with which spreadsheet programs begin a file.
 std::optional<char> DeclaredDelimiter(std::string_view line);

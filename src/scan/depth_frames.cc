@@ -198,8 +198,17 @@ std::vector<std::string> DoubtsOfFirstFrame(const Frame& first, const DepthFrame
   return doubts;
 }
 
-std::string ExplainSize(const DepthFrames&, double, const std::string&) {
-  return "; check depth_unit";
+std::string ExplainSize(const DepthFrames& source, double size, const std::string& length_unit) {
+  // Where the distances between the cameras make up the size, it is that of their poses.
+  Eigen::AlignedBox3d cameras;
+  for (const Camera& camera : source.cameras)
+    cameras.extend(camera.world_from_camera.translation().eval());
+  const double apart = cameras.diagonal().norm();
+  if (apart < size / 4) return "; check depth_unit";
+  return fmt::format(
+      "; check length_unit, {}, in which the translations of the cameras are read: "
+      "these are {:.3g} m apart",
+      length_unit, apart);
 }
 
 std::vector<InfoLine> DescribeSource(const DepthFrames& source) {

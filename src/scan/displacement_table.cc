@@ -37,8 +37,7 @@ constexpr Names kInPlane[] = {
     {"disp.Horizontal Displacement U", "disp.Vertical Displacement V", "disp.Out-Of-Plane: W"}};
 // The status flags of DICe of a correlation that has succeeded.
 const std::set<double> kSucceeded = {0, 1, 2, 3, 4, 6, 15, 18, 26};
-// A status that is missing is NaN, which the set takes for equal to any of its numbers.
-bool HasSucceeded(double status) { return !std::isnan(status) && kSucceeded.count(status) > 0; }
+constexpr const char* kStatusOfDice = "status_flag";
 
 std::string InLowerCase(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -81,6 +80,28 @@ void RefuseTwins(const DelimitedTable& table, const std::vector<std::string>& he
                                    header[own], header[k], own + 1, k + 1));
 }
 
+// Takes the columns of known names that give the quality and the number of a point, where `columns`
+// has none.
+void AddKnownColumns(const DelimitedTable& table, const std::vector<std::string>& header,
+                     DisplacementColumns* columns) {
+  const auto add = [&](const char* name, std::optional<Eigen::Index>* column) {
+    if (*column) return;
+    *column = Find(header, name);
+    if (*column) RefuseTwins(table, header, **column);
+  };
+  add("sigma", &columns->sigma);
+  add(kStatusOfDice, &columns->status);
+  add("returnstatus", &columns->status);
+  add("subset_id", &columns->id);
+}
+
+// Whether a status says that the correlation of a point has failed. One that is missing is NaN,
+// which the set would take for equal to any of its numbers.
+bool HasFailed(double status, bool is_of_dice) {
+  if (std::isnan(status)) return true;
+  return is_of_dice ? kSucceeded.count(status) == 0 : status < 0;
+}
+
 std::optional<DisplacementColumns> FindIn(const DelimitedTable& table,
                                           const std::vector<std::string>& header) {
   for (const KnownNames& known : kKnown) {
@@ -90,16 +111,13 @@ std::optional<DisplacementColumns> FindIn(const DelimitedTable& table,
     DisplacementColumns columns;
     columns.place = *place;
     columns.displacement = *displacement;
-    columns.sigma = Find(header, "sigma");
-    columns.status = Find(header, "status_flag");
-    columns.id = Find(header, "subset_id");
+    AddKnownColumns(table, header, &columns);
     // ARAMIS writes "ID", and older exports "ID,ID".
     for (const char* name : {"id", "id,id", "index"})
       if (!columns.id) columns.id = Find(header, name);
     for (const auto& part : {columns.place, columns.displacement})
       for (const Eigen::Index k : part) RefuseTwins(table, header, k);
-    for (const auto& k : {columns.sigma, columns.status, columns.id})
-      if (k) RefuseTwins(table, header, *k);
+    if (columns.id) RefuseTwins(table, header, *columns.id);
     columns.has_common_names = InLowerCase(known.displacement[0]) == "u" &&
                                InLowerCase(known.place[0]) == "x" && !columns.sigma;
     columns.places_are_deformed = std::string(known.displacement[0]) == kBesideDeformed;
@@ -128,11 +146,15 @@ std::optional<DisplacementColumns> FindDisplacementColumns(DelimitedTable* table
   return columns;
 }
 
+void AddKnownColumns(const DelimitedTable& table, DisplacementColumns* columns) {
+  AddKnownColumns(table, table.header, columns);
+}
+
 std::string LengthUnitOf(const DelimitedTable& table, const DisplacementColumns& columns) {
   std::string unit;
   for (const auto& part : {columns.place, columns.displacement})
     for (const Eigen::Index k : part) {
-      const std::string own = SplitColumnName(table.header[static_cast<size_t>(k)]).unit;
+      const std::string own = UnitOfColumn(table, k);
       if (unit.empty()) unit = own;
       if (own.empty() || own == unit) continue;
       throw InputError({table.file.string()},
@@ -167,9 +189,13 @@ Eigen::Matrix3Xd MovedPoints(const DelimitedTable& table, const DisplacementColu
   const bool forgets_zeros = is_zero.count() > 1;
   Eigen::Matrix3Xd points = places;
   if (!columns.places_are_deformed) points += displacements;
+  const bool is_of_dice =
+      columns.status && !table.header.empty() &&
+      InLowerCase(SplitColumnName(table.header[static_cast<size_t>(*columns.status)]).name) ==
+          kStatusOfDice;
   for (Eigen::Index i = 0; i < rows; ++i) {
     const bool has_failed = (columns.sigma && !(values(i, *columns.sigma) >= 0)) ||
-                            (columns.status && !HasSucceeded(values(i, *columns.status))) ||
+                            (columns.status && HasFailed(values(i, *columns.status), is_of_dice)) ||
                             (forgets_zeros && is_zero[i]);
     if (has_failed) points.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
   }

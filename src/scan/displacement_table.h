@@ -31,9 +31,11 @@ struct DisplacementColumns {
   // Standard deviation that the program expects of the point, in any unit, e.g. pixels; negative or
   // NaN: the correlation failed.
   std::optional<Eigen::Index> sigma;
-  std::optional<Eigen::Index> status;  // the status flag of DICe
-  std::optional<Eigen::Index> id;      // identifies a point in all frames
-  std::string length_unit;             // as the header gives it, e.g. "mm"; empty: not given
+  // The status of the correlation: of DICe, where the column is called STATUS_FLAG, one of its
+  // numbers; otherwise negative or NaN where it failed.
+  std::optional<Eigen::Index> status;
+  std::optional<Eigen::Index> id;  // identifies a point in all frames
+  std::string length_unit;         // as the header gives it, e.g. "mm"; empty: not given
   // x, y, z, u, v, w without sigma: names that other tables may have, too.
   bool has_common_names = false;
 };
@@ -44,6 +46,11 @@ struct DisplacementColumns {
 // are given in the plane only, since the motion out of the plane is then unknown, when places and
 // displacements have different units, and when two columns have a name that is used.
 std::optional<DisplacementColumns> FindDisplacementColumns(DelimitedTable* table);
+
+// Takes the columns SIGMA, STATUS_FLAG (DICe) or returnStatus (SPAM), and SUBSET_ID of a table, in
+// any case, for those that `columns` does not give. Throws InputError when two columns have one of
+// these names.
+void AddKnownColumns(const DelimitedTable& table, DisplacementColumns* columns);
 
 // The unit of places and displacements: in brackets in the names of their columns, or else in the
 // comments. Empty where there is none. The table has names. Throws InputError when two units

@@ -31,7 +31,8 @@ struct Frame {
   Sensors sensors;
   Eigen::Index row_count = 0;       // points in the files
   Eigen::Index dropped_count = 0;   // points not used: not finite, above 1e9 m or, in depth
-                                    // images, outside the depth range; and those below
+                                    // images, outside the depth range; and those below; not
+                                    // counted are vertices of a mesh that were merged
   Eigen::Index repeated_count = 0;  // of these, because they repeat exactly (frame_points.h)
   Eigen::Index cropped_count = 0;   // because they lie outside the crop
   Eigen::Index separate_count = 0;  // because they do not belong to the largest component

@@ -13,12 +13,18 @@ namespace {
 
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-// Splits a text into other characters and runs of digits, in turn: "a12.b" → "a", "12", ".b".
-std::vector<std::string> SplitDigits(const std::string& text) {
+enum class Decimals { kNo, kYes };
+
+// Splits a text into other characters and runs of digits, in turn: "a12.b" → "a", "12", ".b". With
+// decimals, "1.5" is one run, too.
+std::vector<std::string> SplitDigits(const std::string& text, Decimals decimals = Decimals::kNo) {
   std::vector<std::string> parts;
   for (size_t at = 0; at < text.size();) {
     size_t end = at;
     while (end < text.size() && IsDigit(text[end]) == IsDigit(text[at])) ++end;
+    if (decimals == Decimals::kYes && IsDigit(text[at]) && end + 1 < text.size() &&
+        text[end] == '.' && IsDigit(text[end + 1]))
+      for (++end; end < text.size() && IsDigit(text[end]);) ++end;
     parts.push_back(text.substr(at, end - at));
     at = end;
   }
@@ -27,6 +33,44 @@ std::vector<std::string> SplitDigits(const std::string& text) {
 
 std::string WithoutLeadingZeros(const std::string& digits) {
   return digits.substr(std::min(digits.find_first_not_of('0'), digits.size() - 1));
+}
+
+// Whether the runs of digits behind points in the names of files are decimals: no program that
+// writes as many as a number has ends them with 0, as in "1.10", which is then the tenth of a
+// count.
+bool MayHaveDecimals(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const std::string own = std::filesystem::path(name).filename().string();
+    for (const std::string& part : SplitDigits(own, Decimals::kYes)) {
+      const size_t point = part.find('.');
+      if (!IsDigit(part[0]) || point == std::string::npos) continue;
+      if (part.ends_with('0') && part.size() > point + 2) return false;
+    }
+  }
+  return true;
+}
+
+// Negative, 0 or positive, as the number that `a` consists of is smaller than `b`, equal or larger.
+// Digits behind a point are decimals.
+int CompareNumbers(const std::string& a, const std::string& b) {
+  const size_t a_point = std::min(a.find('.'), a.size()), b_point = std::min(b.find('.'), b.size());
+  const std::string x = WithoutLeadingZeros(a.substr(0, a_point)),
+                    y = WithoutLeadingZeros(b.substr(0, b_point));
+  if (x.size() != y.size()) return x.size() < y.size() ? -1 : 1;
+  return x != y ? x.compare(y) : a.substr(a_point).compare(b.substr(b_point));
+}
+
+bool Less(const std::string& a, const std::string& b, Decimals decimals) {
+  const std::vector<std::string> left = SplitDigits(a, decimals), right = SplitDigits(b, decimals);
+  for (size_t i = 0; i < std::min(left.size(), right.size()); ++i) {
+    if (left[i] == right[i]) continue;
+    if (IsDigit(left[i][0]) && IsDigit(right[i][0])) {
+      const int order = CompareNumbers(left[i], right[i]);
+      if (order != 0) return order < 0;
+    }
+    return left[i] < right[i];
+  }
+  return left.size() < right.size();
 }
 
 // Puts a backslash before each of `special`, so that glob takes it literally.
@@ -50,7 +94,7 @@ std::vector<std::string> ExpandWildcards(const std::filesystem::path& folder,
     names.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   }
   globfree(&found);
-  std::sort(names.begin(), names.end(), NaturalLess);
+  SortNaturally(&names);
   return names;
 }
 
@@ -78,18 +122,11 @@ std::string FillPattern(const std::string& pattern, int number) {
   return match.prefix().str() + digits + match.suffix().str();
 }
 
-bool NaturalLess(const std::string& a, const std::string& b) {
-  const std::vector<std::string> left = SplitDigits(a), right = SplitDigits(b);
-  for (size_t i = 0; i < std::min(left.size(), right.size()); ++i) {
-    if (left[i] == right[i]) continue;
-    if (IsDigit(left[i][0]) && IsDigit(right[i][0])) {
-      const std::string x = WithoutLeadingZeros(left[i]), y = WithoutLeadingZeros(right[i]);
-      if (x.size() != y.size()) return x.size() < y.size();
-      if (x != y) return x < y;
-    }
-    return left[i] < right[i];
-  }
-  return left.size() < right.size();
+void SortNaturally(std::vector<std::string>* names) {
+  const Decimals decimals = MayHaveDecimals(*names) ? Decimals::kYes : Decimals::kNo;
+  std::sort(names->begin(), names->end(), [decimals](const std::string& a, const std::string& b) {
+    return Less(a, b, decimals);
+  });
 }
 
 std::optional<long> FindMissingNumber(const std::vector<std::string>& sorted_names) {

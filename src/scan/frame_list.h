@@ -28,8 +28,10 @@ std::vector<std::vector<std::filesystem::path>> OneFilePerFrame(
 // std::invalid_argument when there is not exactly one.
 std::string FillPattern(const std::string& pattern, int number);
 
-// Orders texts such that runs of digits compare as numbers: "a9" comes before "a10".
-bool NaturalLess(const std::string& a, const std::string& b);
+// Sorts names of files by the numbers in them: "a9" comes before "a10", and "a0.25" before "a0.5".
+// Digits behind a point are decimals unless one of the names ends them with a zero: "a1.10" is the
+// tenth of a count, behind "a1.9".
+void SortNaturally(std::vector<std::string>* names);
 
 // The number that is missing from names that differ in one evenly spaced number ("a1", "a2", "a4"
 // → 3), or nothing when none is missing or the names are not of this form. Numbers are evenly

@@ -17,8 +17,7 @@ constexpr double kFarthest = 1e9;  // m
 constexpr double kForgotten = std::numeric_limits<double>::quiet_NaN();
 
 bool IsUsable(const PointCloud& raw, Eigen::Index row) {
-  const bool has_normal = !raw.HasNormals() || raw.normals.col(row).allFinite();
-  return has_normal && (raw.points.col(row).array().abs() < kFarthest).all();
+  return (raw.points.col(row).array().abs() < kFarthest).all();
 }
 
 }  // namespace
@@ -87,6 +86,8 @@ void KeepUsablePoints(const PointCloud& raw, const Eigen::Matrix3Xi& triangles, 
   frame->cloud.points = raw.points(Eigen::all, kept);
   frame->cloud.normals.resize(3, 0);
   if (raw.HasNormals()) frame->cloud.normals = raw.normals(Eigen::all, kept);
+  for (auto normal : frame->cloud.normals.colwise())
+    if (!normal.allFinite()) normal.setZero();
 
   std::vector<Eigen::Vector3i> whole;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t) {

@@ -26,9 +26,10 @@ void ForgetOtherObjects(const FileFrames& source, const Eigen::Matrix3Xi& triang
 
 // Copies the usable rows of `raw` (m, world frame) into frame->cloud and numbers them in
 // frame->source_row. A row is usable when its coordinates are finite and below 1e9 m in magnitude
-// (beyond that a value is a placeholder) and, where there are normals, its normal is finite. Of
-// `triangles` (3 × m, rows of `raw`), those whose three corners are usable are kept and renumbered.
-// Sets row_count and dropped_count. Throws InputError when a triangle has a corner that is no row.
+// (beyond that a value is a placeholder). A normal that is not finite, as programs write it where
+// they could estimate none, becomes zero. Of `triangles` (3 × m, rows of `raw`), those whose three
+// corners are usable are kept and renumbered. Sets row_count and dropped_count. Throws InputError
+// when a triangle has a corner that is no row.
 void KeepUsablePoints(const PointCloud& raw, const Eigen::Matrix3Xi& triangles, Frame* frame);
 
 // The normals (3 × n) rotated and scaled to unit length. Returns 3 × 0 when one of them is zero,

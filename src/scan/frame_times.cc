@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scan/delimited_table.h"
+#include "scan/marker_tracks.h"
 #include "scan/time_series.h"
 
 namespace lacuna {
@@ -69,6 +70,21 @@ std::vector<double> ReadTimes(const Config& frames, size_t count,
   return times;
 }
 
+// A sentence where the times that recording.yaml gives last longer or shorter than those of the
+// files, which they replace; empty where they do not, or the files have none.
+std::string DoubtOfReplacedTimes(const std::vector<double>& times,
+                                 const std::vector<double>& in_files) {
+  const size_t count = times.size();
+  if (count < 2 || in_files.size() != count) return "";
+  const double duration = times.back() - times.front();
+  const double in_files_duration = in_files.back() - in_files.front();
+  if (!(in_files_duration > 0) || !RatesDiffer(duration, in_files_duration, count - 1)) return "";
+  return fmt::format(
+      "the times that recording.yaml gives last {:.4g} s, those of the files {:.4g} s ({:.4g} Hz "
+      "on average); the former are used",
+      duration, in_files_duration, static_cast<double>(count - 1) / in_files_duration);
+}
+
 std::vector<int> ChooseFrames(const Config& frames, const std::vector<double>& times) {
   constexpr double kForever = std::numeric_limits<double>::infinity();
   const double from = frames.Quantity("from", kTime, kAnyValue, -kForever);
@@ -93,9 +109,11 @@ std::vector<double> FrameTimes::OfChosen() const {
 }
 
 FrameTimes ReadFrameTimes(const Config& frames, size_t count, const std::vector<double>& file_times,
-                          const DataLocation& data) {
+                          const DataLocation& data, std::vector<std::string>* warnings) {
   FrameTimes times;
   times.in_files = ReadTimes(frames, count, file_times, data, &times.file);
+  const std::string doubt = DoubtOfReplacedTimes(times.in_files, file_times);
+  if (!doubt.empty()) warnings->push_back(doubt);
   times.chosen = ChooseFrames(frames, times.in_files);
   return times;
 }

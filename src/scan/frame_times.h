@@ -3,6 +3,7 @@
 #define LACUNA_SCAN_FRAME_TIMES_H_
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/config.h"
@@ -22,9 +23,10 @@ struct FrameTimes {
 // empty when they have none). Of the frames with `from` ≤ time ≤ `to` it chooses every
 // `every`-th. A single frame needs no time. Throws InputError (file, line, column and field) when
 // there are no times or more than one source of them, when their number is not `count`, when they
-// do not ascend, and when no frame is chosen.
+// do not ascend, and when no frame is chosen. Appends to `warnings` where the times that are given
+// and those of the files have different lengths (RatesDiffer).
 FrameTimes ReadFrameTimes(const Config& frames, size_t count, const std::vector<double>& file_times,
-                          const DataLocation& data);
+                          const DataLocation& data, std::vector<std::string>* warnings);
 
 }  // namespace lacuna
 

@@ -62,6 +62,11 @@ TrcHeader ReadTrcHeader(const std::filesystem::path& file,
   if (lines.size() < 6 || lines[0].find("PathFileType") == std::string_view::npos) {
     throw InputError({file.string()}, "is not a TRC file or ends within its header");
   }
+  if (lines[1].find('\t') == std::string_view::npos)
+    throw InputError(
+        {file.string(), 2, 1},
+        "has no tabs, which a TRC file has between its entries; a program or an editor "
+        "may have replaced them by blanks");
   const std::vector<std::string_view> keys = SplitFields(lines[1], '\t');
   const std::vector<std::string_view> values = SplitFields(lines[2], '\t');
   TrcHeader header;
@@ -91,7 +96,7 @@ MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerCol
                               FileTimes times) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (extension == ".c3d") return ReadC3d(file);
+  if (extension == ".c3d") return ReadC3d(file, times);
   if (extension == ".trc") return ReadTrc(file, times);
   switch (CaptureTableOf(file)) {
     case CaptureTable::kQualisys:
@@ -137,6 +142,12 @@ MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumn
     int axis = 0;
     for (const std::string& pattern : {columns.x, columns.y, columns.z}) {
       const Eigen::Index column = RequireColumn(table, FillStar(pattern, tracks.names[marker]));
+      const std::string unit = LengthUnitOfColumn(table, column);
+      if (tracks.length_unit.empty()) tracks.length_unit = unit;
+      if (unit != tracks.length_unit && !unit.empty())
+        throw InputError(
+            {file.string(), 1, 1},
+            fmt::format("gives coordinates in {} beside others in {}", unit, tracks.length_unit));
       for (Eigen::Index frame = 0; frame < frame_count; ++frame) {
         tracks.positions[frame](axis, marker) = table.values(frame, column);
       }
@@ -145,11 +156,9 @@ MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumn
   }
   if (!columns.time.empty()) {
     const Eigen::Index time = RequireColumn(table, columns.time);
-    if (times == FileTimes::kUsed) {
+    if (times == FileTimes::kUsed)
       RefuseOtherUnit(table, time, columns.time_unit, kTime, "time_unit");
-      tracks.times = columns.time_unit * table.values.col(time);
-      CheckTimes(file, tracks.times, 0);
-    }
+    SetTimes(file, columns.time_unit * table.values.col(time), 0, times, &tracks);
   }
   return tracks;
 }
@@ -204,9 +213,8 @@ MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes use) {
     throw InputError({file.string()}, fmt::format("holds {} frames where NumFrames says {}",
                                                   times.size(), header.frame_count));
   }
-  if (use == FileTimes::kReplaced) return tracks;
-  tracks.times = Eigen::Map<const Eigen::VectorXd>(times.data(), times.size());
-  CheckTimes(file, tracks.times, header.rate);
+  SetTimes(file, Eigen::Map<const Eigen::VectorXd>(times.data(), times.size()), header.rate, use,
+           &tracks);
   return tracks;
 }
 

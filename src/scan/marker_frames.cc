@@ -15,6 +15,7 @@
 #include "scan/frame_points.h"
 #include "scan/marker_files.h"
 #include "scan/time_series.h"
+#include "scan/track_doubts.h"
 
 namespace lacuna {
 namespace {
@@ -116,6 +117,10 @@ void ReadSource(const Config& frames, const DataLocation& data, MarkerFrames* so
     warnings->push_back(fmt::format("{} says that its lengths are in {}; recording.yaml says {}",
                                     source->file.string(), unit, data.length_unit));
   }
+}
+
+std::vector<std::string> DoubtsOfFirstFrame(const Frame&, const MarkerFrames& source) {
+  return DoubtsOfTracks(source.tracks, source.file);
 }
 
 std::vector<double> TimesInFiles(const MarkerFrames& source) {

@@ -40,6 +40,8 @@ void KeepFrames(const std::vector<int>& chosen, MarkerFrames* source);
 // Row i of the frame is marker i. Markers that were not seen are dropped.
 void LoadPoints(const MarkerFrames& source, Frame* frame);
 std::vector<double> TimesInFiles(const MarkerFrames& source);
+// About the tracks in all frames (track_doubts.h).
+std::vector<std::string> DoubtsOfFirstFrame(const Frame& first, const MarkerFrames& source);
 Markers NamedMarkers(const MarkerFrames& source);
 std::string ExplainSize(const MarkerFrames& source, double size, const std::string& length_unit);
 std::vector<InfoLine> DescribeSource(const MarkerFrames& source);
@@ -54,7 +56,6 @@ inline std::vector<std::filesystem::path> AllFiles(const MarkerFrames& source) {
 inline std::vector<std::filesystem::path> FilesWithHeaders(const MarkerFrames&) { return {}; }
 inline bool IsTracked(const MarkerFrames&) { return false; }
 inline bool ShowsSurface(const MarkerFrames&) { return false; }
-inline std::vector<std::string> DoubtsOfFirstFrame(const Frame&, const MarkerFrames&) { return {}; }
 inline bool RefineByFirstFrame(const Frame&, MarkerFrames*, std::vector<std::string>*) {
   return false;
 }

@@ -12,6 +12,8 @@
 
 namespace lacuna {
 
+namespace {
+
 void CheckTimes(const std::filesystem::path& file, const Eigen::VectorXd& times, double rate) {
   for (Eigen::Index i = 0; i < times.size(); ++i) {
     if (!std::isfinite(times[i]) || (i > 0 && times[i] <= times[i - 1])) {
@@ -28,6 +30,45 @@ void CheckTimes(const std::filesystem::path& file, const Eigen::VectorXd& times,
                       is_equal ? ", perhaps because it was rounded" : "", remedy));
     }
   }
+}
+
+// Times with gaps contradict the rate only where most intervals do, too.
+void WarnOfOtherRate(const std::filesystem::path& file, double rate, MarkerTracks* tracks) {
+  const Eigen::Index count = tracks->times.size() - 1;
+  if (!(rate > 0) || count < 1) return;
+  std::vector<double> intervals;
+  for (Eigen::Index k = 0; k < count; ++k)
+    intervals.push_back(tracks->times[k + 1] - tracks->times[k]);
+  std::nth_element(intervals.begin(), intervals.begin() + count / 2, intervals.end());
+  const double typical = 1 / intervals[static_cast<size_t>(count / 2)];
+  const double mean = static_cast<double>(count) / (tracks->times[count] - tracks->times[0]);
+  if (!RatesDiffer(typical, rate, static_cast<size_t>(count)) ||
+      !RatesDiffer(mean, rate, static_cast<size_t>(count)))
+    return;
+  tracks->warnings.push_back(
+      fmt::format("{}: its header states {:g} Hz, but its times follow each other at {:.4g} Hz; "
+                  "its times are used, which `rate` in recording.yaml replaces",
+                  file.string(), rate, typical));
+}
+
+}  // namespace
+
+bool RatesDiffer(double a, double b, size_t count) {
+  constexpr double kTolerance = 0.02;
+  return std::abs(a - b) > std::max(kTolerance, 1 / static_cast<double>(count)) * std::abs(b);
+}
+
+void SetTimes(const std::filesystem::path& file, const Eigen::VectorXd& times, double rate,
+              FileTimes use, MarkerTracks* tracks) {
+  if (use == FileTimes::kReplaced) {
+    bool ascends = times.allFinite();
+    for (Eigen::Index i = 1; i < times.size(); ++i) ascends = ascends && times[i] > times[i - 1];
+    if (ascends) tracks->times = times;
+    return;
+  }
+  CheckTimes(file, times, rate);
+  tracks->times = times;
+  WarnOfOtherRate(file, rate, tracks);
 }
 
 void NumberRepeatedNames(const std::filesystem::path& file, MarkerTracks* tracks) {

@@ -32,9 +32,16 @@ struct Markers {
 // Whether the times of a file are used, so that they have to ascend, or are replaced by others.
 enum class FileTimes { kUsed, kReplaced };
 
-// Throws InputError naming the frame of `file` whose time (s) does not follow the one before.
-// `rate`: Hz, that the file states; 0 if it states none.
-void CheckTimes(const std::filesystem::path& file, const Eigen::VectorXd& times, double rate);
+// Sets the times of the tracks to `times` (s, of `file`, which states `rate` in Hz; 0: none). Times
+// that are used must ascend: throws InputError naming the frame whose time does not follow the one
+// before, and warns where they contradict the rate. Times that are replaced are left out if they do
+// not ascend, and serve for a comparison only (ReadFrameTimes).
+void SetTimes(const std::filesystem::path& file, const Eigen::VectorXd& times, double rate,
+              FileTimes use, MarkerTracks* tracks);
+
+// Whether `a` and `b` differ by more than 2 %, or by more than one of `count` intervals: a rounded
+// time may be off by one.
+bool RatesDiffer(double a, double b, size_t count);
 
 // Makes the names of the markers unique: "a" that occurs again becomes "a (2)". Appends to the
 // warnings which names of `file` occur several times.

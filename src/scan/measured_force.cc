@@ -25,11 +25,12 @@ std::vector<MeasuredForce> ReadForces(const Config& config, const DataLocation& 
       force.forces = item.Vector("constant", kForce);
       force.times = Eigen::VectorXd::Constant(1, first_time);
     } else {
-      const double unit = ReadUnit(item, "unit", kForce, "N");
-      const TimeSeries series = ReadTimeSeries(item, data, frames, unit, kForce, "unit");
+      const ColumnUnit unit = ReadColumnUnit(item, "unit", kForce, "N");
+      const TimeSeries series = ReadTimeSeries(item, data, frames, unit, Rows::kMeasured);
       force.file = series.table.file;
       force.times = series.times;
       force.forces = series.values;
+      force.gaps = series.gaps;
     }
     forces.push_back(std::move(force));
   }
@@ -37,9 +38,10 @@ std::vector<MeasuredForce> ReadForces(const Config& config, const DataLocation& 
 }
 
 std::string DescribeForce(const MeasuredForce& force) {
-  return fmt::format("{}: {} values, at most {:.4g} N{}", force.name, force.times.size(),
+  return fmt::format("{}: {} values, at most {:.4g} N{}{}", force.name, force.times.size(),
                      force.forces.colwise().norm().maxCoeff(),
-                     force.region ? ", on " + DescribeRegion(*force.region) : "");
+                     force.region ? ", on " + DescribeRegion(*force.region) : "",
+                     force.gaps.empty() ? "" : "; " + force.gaps);
 }
 
 std::string WriteForce(const std::filesystem::path& folder, const MeasuredForce& force,

@@ -20,6 +20,7 @@ struct MeasuredForce {
   Eigen::VectorXd times;         // k, s, ascending
   Eigen::Matrix3Xd forces;       // 3 × k, N, resultant, world frame
   std::filesystem::path file;    // file of the values; empty for a constant
+  std::string gaps;              // rows of the file that have no value or no time of their own
 };
 
 // The force at a time, N: linear between the measured times, constant before the first and after

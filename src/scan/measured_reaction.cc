@@ -50,11 +50,12 @@ MeasuredReaction ReadReaction(const Config& item, const DataLocation& data, cons
   const double sign = item.Choice<double>(
       "exerted_by", {{"grip", 1.0}, {"object", -1.0}, {"unknown", 0.0}}, "grip");
   reaction.sign_is_unknown = sign == 0;
-  const double unit = ReadUnit(item, "unit", dimension, reaction.Unit());
-  TimeSeries series = ReadColumns(item, data, frames, columns, sign < 0 ? -unit : unit);
-  RefuseOtherUnits(series.table, columns, unit, dimension, "unit");
+  const ColumnUnit unit = ReadColumnUnit(item, "unit", dimension, reaction.Unit());
+  TimeSeries series = ReadColumns(item, data, frames, columns, unit, Rows::kMeasured);
   reaction.times = std::move(series.times);
   reaction.values = std::move(series.values);
+  if (sign < 0) reaction.values *= -1;
+  reaction.gaps = std::move(series.gaps);
   reaction.file = series.table.file;
   reaction.time_margin = TimeMargin(frames.times);
   reaction.deviation = item.Quantity("deviation", dimension, kPositive, 0);
@@ -104,10 +105,10 @@ std::vector<MeasuredReaction> ReadReactions(const Config& config, const DataLoca
 }
 
 std::string DescribeReaction(const MeasuredReaction& reaction) {
-  return fmt::format("{}: {} values of {}{}, at most {:.4g} {}", reaction.name,
+  return fmt::format("{}: {} values of {}{}, at most {:.4g} {}{}", reaction.name,
                      reaction.times.size(), reaction.is_torque ? "the torque " : "",
                      fmt::join(reaction.labels, ", "), reaction.values.cwiseAbs().maxCoeff(),
-                     reaction.Unit());
+                     reaction.Unit(), reaction.gaps.empty() ? "" : "; " + reaction.gaps);
 }
 
 std::string WriteReaction(const std::filesystem::path& folder, const MeasuredReaction& reaction,

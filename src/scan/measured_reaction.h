@@ -46,6 +46,7 @@ struct MeasuredReaction {
   bool sign_is_unknown = false;
   double time_margin = 0;  // s, by which a frame may lie before the first value or after the last
   std::filesystem::path file;
+  std::string gaps;  // rows of the file that have no value or no time of their own; empty: none
 
   int Components() const { return static_cast<int>(directions.cols()); }
   const char* Unit() const { return is_torque ? "N m" : "N"; }

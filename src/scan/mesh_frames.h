@@ -26,7 +26,8 @@ struct MeshFrames : FileFrames {
 
 void ReadSource(const Config& frames, const DataLocation& data, MeshFrames* source,
                 std::vector<std::string>* warnings);
-// The points of the frame are the vertices, with normals from the triangles around them.
+// The points of the frame are the vertices of the mended surface (geometry/mended_surface.h), with
+// normals from the triangles around them. In tracked frames `source_row` is the vertex in the file.
 void LoadPoints(const MeshFrames& source, Frame* frame);
 inline bool IsTracked(const MeshFrames& source) { return source.tracked; }
 

@@ -10,16 +10,15 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <exception>
 #include <optional>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/quantity.h"
 #include "geometry/ply_header.h"
 #include "scan/delimited_table.h"
 #include "scan/displacement_table.h"
@@ -69,7 +68,15 @@ int ReadPly(const std::filesystem::path& file, const std::string& content,
             pcl::PCLPointCloud2* cloud) {
   const PlyHeader header = ReadPlyHeader(file, content);
   if (header.is_text) RefuseWords(file, content, header.body);
-  return pcl::PLYReader().read(file.string(), *cloud);
+  const int status = pcl::PLYReader().read(file.string(), *cloud);
+  // PCL takes the size of the image of an element "camera" for that of the cloud. A "range_grid"
+  // arranges the points in such an image.
+  const PlyElement* vertices = header.Find("vertex");
+  if (vertices != nullptr && header.Find("range_grid") == nullptr) {
+    cloud->width = static_cast<uint32_t>(vertices->count);
+    cloud->height = 1;
+  }
+  return status;
 }
 
 // PCL takes lines at the beginning of the points for further lines of the header, so that it is
@@ -165,17 +172,6 @@ bool AreUnitVectors(const Eigen::Matrix3Xd& vectors) {
   return ((vectors.colwise().norm().array() - 1).abs() < kRounding).all();
 }
 
-// The unit of length in the name of a column; empty where its brackets hold another remark.
-std::string LengthUnitIn(const DelimitedTable& table, Eigen::Index column) {
-  std::string unit = SplitColumnName(table.header[static_cast<size_t>(column)]).unit;
-  try {
-    ParseQuantity("1 " + unit, kLength);
-  } catch (const std::invalid_argument&) {
-    return "";
-  }
-  return unit;
-}
-
 // The columns of a table of image correlation that the user or the header names.
 std::optional<DisplacementColumns> DisplacementsOf(const PointColumns& columns,
                                                    DelimitedTable* table) {
@@ -188,8 +184,10 @@ std::optional<DisplacementColumns> DisplacementsOf(const PointColumns& columns,
   }
   chosen.places_are_deformed = columns.positions_are_deformed;
   if (!columns.sigma.empty()) chosen.sigma = RequireColumn(*table, columns.sigma);
-  if (!table->header.empty() && !LengthUnitIn(*table, chosen.place[0]).empty() &&
-      !LengthUnitIn(*table, chosen.displacement[0]).empty())
+  if (!columns.status.empty()) chosen.status = RequireColumn(*table, columns.status);
+  AddKnownColumns(*table, &chosen);
+  if (!table->header.empty() && !LengthUnitOfColumn(*table, chosen.place[0]).empty() &&
+      !LengthUnitOfColumn(*table, chosen.displacement[0]).empty())
     chosen.length_unit = LengthUnitOf(*table, chosen);
   return chosen;
 }
@@ -229,7 +227,8 @@ PointCloud PointsOfTable(DelimitedTable table, const PointColumns& columns,
   if (!columns.position[0].empty()) {
     cloud.points = Columns(table, columns.position);
     if (correlation != nullptr && !table.header.empty()) {
-      correlation->length_unit = LengthUnitIn(table, RequireColumn(table, columns.position[0]));
+      correlation->length_unit =
+          LengthUnitOfColumn(table, RequireColumn(table, columns.position[0]));
     }
     if (!columns.normal[0].empty()) cloud.normals = Columns(table, columns.normal);
     return cloud;

@@ -22,6 +22,7 @@ struct PointColumns {
   std::array<std::string, 3> normal;
   std::array<std::string, 3> displacement;  // added to the position
   std::string sigma;                        // negative or NaN: the point was not measured
+  std::string status;                       // of the correlation (DisplacementColumns::status)
   std::string id;                           // identifies a point in all frames
   // Whether positions that are named beside displacements are those of the deformed state.
   bool positions_are_deformed = false;

@@ -39,6 +39,7 @@ PointColumns ReadPointColumns(const Config& frames) {
       columns.positions_are_deformed =
           map->Choice<bool>("places", {{"reference", false}, {"deformed", true}}, "reference");
     if (!u.empty()) columns.sigma = map->Text("sigma", "");
+    if (!u.empty()) columns.status = map->Text("status", "");
   }
   return columns;
 }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "geometry/rotation.h"
@@ -26,28 +27,49 @@ void CheckMarkers(const Config& item, const std::vector<std::string>& chosen,
   }
 }
 
-// A rotation vector can jump although the rotation does not: from an angle of 180° to −180° about
-// the same axis. The path between such rows would be a turn backwards.
+// Chooses of each rotation vector the equal one, which differs by full turns about the same axis,
+// that is nearest to that of the row before: robots give vectors of at most 180°, which change
+// their sign where the angle passes that.
+void MakeContinuous(Eigen::Matrix3Xd* rotations) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  for (Eigen::Index k = 1; k < rotations->cols(); ++k) {
+    const Eigen::Vector3d before = rotations->col(k - 1), own = rotations->col(k);
+    const Eigen::Vector3d axis = (own.isZero(0) ? before : own).normalized();
+    rotations->col(k) += kTurn * std::round((before - own).dot(axis) / kTurn) * axis;
+  }
+}
+
+// Which way it turned in between is not known where two rows are too far apart.
 void RequireContinuousTurn(const Config& turn, const DelimitedTable& table,
                            const Eigen::Matrix3Xd& rotations) {
   for (Eigen::Index k = 1; k < rotations.cols(); ++k)
     if ((rotations.col(k) - rotations.col(k - 1)).norm() > std::numbers::pi)
       turn.Fail("x", PlaceOfRow(table, k) +
                          ": the rotation vector changes by more than 180° from the row before; it "
-                         "must be continuous (an angle that passes 180° goes on to 181°), with "
-                         "enough rows");
+                         "must be continuous, with enough rows");
+}
+
+// The names of columns that are given by name or number; empty where the table has none.
+std::vector<std::string> NamesOfColumns(const DelimitedTable& table,
+                                        const std::vector<std::string>& columns) {
+  std::vector<std::string> names;
+  if (table.header.empty()) return names;
+  for (const std::string& column : columns)
+    names.push_back(table.header[static_cast<size_t>(RequireColumn(table, column))]);
+  return names;
 }
 
 void ReadPath(const Config& path, const DataLocation& data, const FrameData& frames,
               RecordedGrip* grip) {
-  const double unit = ReadUnit(path, "length_unit", kLength, data.length_unit);
-  const TimeSeries series = ReadTimeSeries(path, data, frames, unit, kLength, "length_unit");
+  const ColumnUnit unit = ReadColumnUnit(path, "length_unit", kLength, data.length_unit);
+  const TimeSeries series = ReadTimeSeries(path, data, frames, unit, Rows::kAll);
   grip->motion = GripMotion::kGiven;
   grip->file = series.table.file;
   grip->times = series.times;
   grip->displacements = series.values.colwise() - Eigen::Vector3d(series.values.col(0));
   const std::optional<Config> turn = path.OptionalChild("turn");
   if (!turn) return;
+  if (path.Has("from")) turn->Fail("", "needs a `file`: no turn is read from headers");
   const double radian = ReadUnit(*turn, "unit", kAngle, "rad");
   const std::vector<std::string> turns = {turn->Text("x"), turn->Text("y"), turn->Text("z")};
   grip->rotations = ColumnsOf(series.table, turns, radian);
@@ -55,8 +77,11 @@ void ReadPath(const Config& path, const DataLocation& data, const FrameData& fra
   if (!grip->rotations.allFinite()) {
     turn->Fail("x", grip->file.string() + ": a row of the turn is not finite");
   }
+  MakeContinuous(&grip->rotations);
   RequireContinuousTurn(*turn, series.table, grip->rotations);
   grip->pivot = turn->Vector("about", kLength);
+  grip->turn_columns = NamesOfColumns(series.table, turns);
+  grip->turns_in_radians = radian == 1;
 }
 
 }  // namespace
@@ -79,6 +104,15 @@ Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time, double since) 
   motion.rotate(rotation(time) * rotation(since).transpose());
   motion.translate(-grip.pivot);
   return motion;
+}
+
+PathRange RangeOfPath(const RecordedGrip& grip) {
+  PathRange range;
+  for (const auto displacement : grip.displacements.colwise())
+    range.shift = std::max(range.shift, displacement.norm());
+  for (const auto rotation : grip.rotations.colwise())
+    range.turn = std::max(range.turn, AngleBetween(grip.rotations.col(0), rotation));
+  return range;
 }
 
 PlacementDeviation ReadPlacement(const Config& config, AxisSet axes) {
@@ -133,10 +167,22 @@ std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& da
   return grips;
 }
 
+namespace {
+
+std::string DescribeRange(const RecordedGrip& grip) {
+  const PathRange range = RangeOfPath(grip);
+  std::string text = fmt::format("by up to {:.4g} mm", 1e3 * range.shift);
+  if (grip.rotations.cols() > 0)
+    text += fmt::format(" and {:.4g}°", range.turn * 180 / std::numbers::pi);
+  return text + " since its first row";
+}
+
+}  // namespace
+
 std::string DescribeGrip(const RecordedGrip& grip) {
   std::string text = fmt::format("{}: {}", grip.region.name, DescribeRegion(grip.region));
   if (grip.motion == GripMotion::kGiven)
-    return text + ", moves along a given path" +
+    return text + ", moves along a given path, " + DescribeRange(grip) +
            (grip.axes.IsAll() ? "" : ", held along " + grip.axes.Names() + " only");
   text += grip.motion == GripMotion::kFollowsScan
               ? ", follows the scan"

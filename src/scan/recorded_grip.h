@@ -43,6 +43,8 @@ struct RecordedGrip {
   Eigen::Matrix3Xd rotations;      // 3 × k, rad, rotation vectors; 3 × 0: it does not rotate
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  // m
   std::filesystem::path file;                       // file of the path
+  std::vector<std::string> turn_columns;            // in that file; empty where they have no names
+  bool turns_in_radians = false;                    // the numbers in these columns
 };
 
 // The rigid motion of a grip of motion kGiven from its undeformed place. Between the given times it
@@ -51,6 +53,13 @@ struct RecordedGrip {
 // row of its path.
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time);
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time, double since);
+
+// The largest distance, m, from the first row, and the largest angle, rad, turned since; 0 unless
+// the path is given.
+struct PathRange {
+  double shift = 0, turn = 0;
+};
+PathRange RangeOfPath(const RecordedGrip& grip);
 
 // Reads `placement: {shift_deviation: 1 mm, turn_deviation: 1 deg}` of a held part, of which at
 // least one must be above 0; without it the placement is exact. The part must be held along all
@@ -64,8 +73,8 @@ std::string WithPlacement(std::string mapping, const PlacementDeviation& placeme
 //   follows_markers: [a, b]           names among `marker_names`
 //   path: {file, time, x, y, z, time_unit, length_unit, turn: {x, y, z, unit, about}}
 // A path has one row per time, the first of which belongs to the undeformed place; `turn` names
-// three more columns of the same file with a rotation vector about the point `about`, which changes
-// by at most π between two rows. `deforms:
+// three more columns of the same file with a rotation vector about the point `about`, of
+// which the multiples of full turns about its axis are chosen that make it continuous. `deforms:
 // true` lets a grip that follows something deform with it. `directions: [z]` beside a path without
 // `turn` leaves the part free along the other axes, like plates without friction. `frames` are all
 // frames in the files, `marker_names` is empty when the frames have no markers. Throws InputError

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "scan/path_doubts.h"
 #include "scan/time_span.h"
 
 namespace lacuna {
@@ -89,15 +90,21 @@ std::vector<std::string> DoubtsOfObject(const RecordedObject& object, double fir
     const std::string doubt = DoubtOfDensity(*object.density);
     if (!doubt.empty()) doubts.push_back(doubt);
   }
+  const auto add = [&](const std::string& name, const std::filesystem::path& file,
+                       const std::string& doubt) {
+    if (!doubt.empty()) doubts.push_back(fmt::format("{} ({}): {}", name, file.string(), doubt));
+  };
   const auto check = [&](const std::string& name, const std::filesystem::path& file,
                          const Eigen::VectorXd& times,
                          const Eigen::Ref<const Eigen::MatrixXd>& values) {
-    if (file.empty()) return;
-    const std::string doubt = DoubtOfTimeSpan(times, values, first, last);
-    if (!doubt.empty()) doubts.push_back(fmt::format("{} ({}): {}", name, file.string(), doubt));
+    if (!file.empty()) add(name, file, DoubtOfTimeSpan(times, values, first, last));
   };
   for (const RecordedGrip& grip : object.grips) {
-    check("the path of " + grip.region.name, grip.file, grip.times, grip.displacements);
+    if (grip.motion != GripMotion::kGiven) continue;
+    const std::string name = "the path of " + grip.region.name;
+    check(name, grip.file, grip.times, grip.displacements);
+    add(name, grip.file, DoubtOfTurn(grip));
+    add(name, grip.file, DoubtOfGap(grip, first, last));
   }
   for (const MeasuredForce& force : object.forces) {
     check("the force " + force.name, force.file, force.times, force.forces);
@@ -105,6 +112,18 @@ std::vector<std::string> DoubtsOfObject(const RecordedObject& object, double fir
   for (const MeasuredReaction& reaction : object.reactions) {
     check(fmt::format("the {} on {}", reaction.Quantity(), reaction.name), reaction.file,
           reaction.times, reaction.values);
+  }
+  return doubts;
+}
+
+std::vector<std::string> DoubtsOfJumps(const RecordedObject& object, double size, double last) {
+  std::vector<std::string> doubts;
+  for (const RecordedGrip& grip : object.grips) {
+    if (grip.motion != GripMotion::kGiven) continue;
+    const std::string doubt = DoubtOfJump(grip, size, last);
+    if (!doubt.empty())
+      doubts.push_back(
+          fmt::format("the path of {} ({}): {}", grip.region.name, grip.file.string(), doubt));
   }
   return doubts;
 }

@@ -56,9 +56,13 @@ std::vector<PlacementDeviation> PlacementDeviationsOfParts(const RecordedObject&
 // The files that the object's regions, paths, forces and reactions were read from.
 std::vector<std::filesystem::path> FilesOf(const RecordedObject& object);
 
-// Doubts about the object, one sentence each: its density, and loads and paths whose times do not
-// belong to a recording from `first` to `last` (s).
+// Doubts about the object, one sentence each: its density, loads and paths whose times do not
+// belong to a recording from `first` to `last` (s), and paths with gaps or a doubtful turn
+// (path_doubts.h).
 std::vector<std::string> DoubtsOfObject(const RecordedObject& object, double first, double last);
+
+// Doubts about paths that jump by more than the object's `size` (m), not after `last` (s).
+std::vector<std::string> DoubtsOfJumps(const RecordedObject& object, double size, double last);
 
 // A sentence about a density (kg/m³) that no soft object has; empty if there is no doubt.
 std::string DoubtOfDensity(double density);

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/quantity.h"
 #include "geometry/tri_mesh.h"
 #include "scan/time_span.h"
 
@@ -20,6 +21,30 @@ void CheckRowCount(const Recording& recording, const Frame& frame) {
                     "same in every frame",
                     frame.row_count, recording.row_count));
   }
+}
+
+// Refuses tracked points whose triangles join them otherwise than in frame 0, as where a program
+// has numbered the vertices anew. Compared are the triangles between vertices that frame 0 has.
+// Some may differ: a program may have cut a polygon along its other diagonal.
+void CheckFaces(const Recording& recording, const Frame& frame) {
+  if (frame.index == 0 || recording.faces.empty() || !HasTrackedPoints(recording)) return;
+  std::vector<char> is_corner(static_cast<size_t>(frame.row_count), 0);
+  for (const std::array<int, 3>& face : recording.faces)
+    for (const int row : face) is_corner[static_cast<size_t>(row)] = 1;
+  size_t compared = 0, others = 0;
+  for (const std::array<int, 3>& face : FacesByRow(frame)) {
+    const bool is_comparable = std::all_of(face.begin(), face.end(), [&](int row) {
+      return is_corner[static_cast<size_t>(row)] != 0;
+    });
+    if (!is_comparable) continue;
+    ++compared;
+    others += !std::binary_search(recording.faces.begin(), recording.faces.end(), face);
+  }
+  if (2 * others <= compared) return;
+  throw InputError(
+      fmt::format("{} of {} triangles join other vertices than in frame 0, so that a vertex is not "
+                  "the same material point in both; without `tracked` it need not be",
+                  others, compared));
 }
 
 // "frame 3 of "bend": <file>: …", with the file unless the message begins with one already.
@@ -90,8 +115,8 @@ std::string DescribeUncovered(const std::filesystem::path& file, const Eigen::Ve
                               const Recording& recording, int first, int last) {
   const double begin = recording.times[first], end = recording.times[last];
   if (CoversTimes(times, begin, end, TimeMargin(recording.times))) return "";
-  return fmt::format("{} covers {:.9g} s to {:.9g} s, the frames {:.9g} s to {:.9g} s",
-                     file.string(), times[0], times[times.size() - 1], begin, end);
+  return fmt::format("{} covers {} to {}, the frames {} to {}", file.string(), TimeText(times[0]),
+                     TimeText(times[times.size() - 1]), TimeText(begin), TimeText(end));
 }
 
 }  // namespace
@@ -134,6 +159,7 @@ Frame LoadFrame(const Recording& recording, int i) {
         try {
           LoadPoints(source, &frame);
           CheckRowCount(recording, frame);
+          CheckFaces(recording, frame);
         } catch (const InputError& error) {
           Rethrow(recording, frame, error);
         }
@@ -143,6 +169,20 @@ Frame LoadFrame(const Recording& recording, int i) {
       << recording.name << ", frame " << i << ": " << frame.dropped_count << " of "
       << frame.row_count << " points dropped (" << DescribeDropped(frame) << ")";
   return frame;
+}
+
+std::vector<std::array<int, 3>> FacesByRow(const Frame& frame) {
+  std::vector<std::array<int, 3>> faces;
+  for (const auto triangle : frame.triangles.colwise()) {
+    std::array<int, 3> face{};
+    for (int k = 0; k < 3; ++k)
+      face[static_cast<size_t>(k)] =
+          frame.source_row.size() > 0 ? frame.source_row[triangle[k]] : triangle[k];
+    std::sort(face.begin(), face.end());
+    faces.push_back(face);
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
 }
 
 bool HasTrackedPoints(const Recording& recording) {
@@ -160,8 +200,9 @@ std::string DescribeRecording(const Recording& recording) {
   };
   std::visit(
       [&](const auto& source) {
-        add("frames", fmt::format("{} {}, {:g} s to {:g} s", recording.FrameCount(), source.kTitle,
-                                  recording.times.front(), recording.times.back()));
+        add("frames",
+            fmt::format("{} {}, {} to {}", recording.FrameCount(), source.kTitle,
+                        TimeText(recording.times.front()), TimeText(recording.times.back())));
         add("first frame", DescribeFrame(LoadFrame(recording, 0)));
         add("last frame", DescribeFrame(LoadFrame(recording, recording.FrameCount() - 1)));
         for (const auto& [label, value] : DescribeSource(source)) add(label, value);

@@ -6,6 +6,7 @@
 #ifndef LACUNA_SCAN_RECORDING_H_
 #define LACUNA_SCAN_RECORDING_H_
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -29,6 +30,9 @@ struct Recording {
   std::vector<double> times;         // s, ascending, one per frame
   std::filesystem::path times_file;  // empty when the times do not have a file of their own
   Eigen::Index row_count = 0;        // rows of the first frame; if tracked, of every frame
+  // The triangles of the first frame, if its points are tracked: the rows of their corners,
+  // ascending, in ascending order.
+  std::vector<std::array<int, 3>> faces;
   // The points that are identified by name: those of a marker file, or a selection of tracked
   // points that a prediction is compared with. Empty for scans.
   Markers markers;
@@ -67,9 +71,13 @@ std::string DescribeUncoveredForce(const Recording& recording, int first, int la
 
 // Reads frame i in [0, FrameCount()). Points that are not finite are dropped and counted. Throws
 // InputError naming file and frame when the file is absent, truncated or malformed, when fewer than
-// four points (one marker) remain, or when the number of tracked points changes. Safe to call from
-// several threads at once.
+// four points (one marker) remain, when the number of tracked points changes, or when most of the
+// triangles between tracked points are others than in frame 0. Safe to call from several threads at
+// once.
 Frame LoadFrame(const Recording& recording, int i);
+
+// The triangles of a frame as Recording::faces has them.
+std::vector<std::array<int, 3>> FacesByRow(const Frame& frame);
 
 // Whether the points of the frames are tracked without having names: row i of every frame is the
 // same material point.

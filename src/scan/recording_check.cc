@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/interrupt.h"
+#include "geometry/tri_mesh.h"
 #include "scan/components.h"
 #include "scan/delimited_table.h"
 
@@ -37,6 +38,36 @@ void AddRepeats(const std::vector<int>& repeats, int frame_count,
                   repeats.size(), frame_count, repeats.size() == 1 ? "s" : "",
                   repeats.size() == 1 ? "" : "s", Listed(repeats)));
 }
+
+// Frames much smaller or larger than the first one. Those with far fewer points are left out: they
+// show a part of the object.
+class SizeSurvey {
+ public:
+  void Add(const Frame& frame) {
+    const double size = BoundingBoxDiagonal(frame.cloud.points);
+    if (frame.index == 0) {
+      points_ = frame.cloud.Size();
+      first_size_ = size;
+    }
+    if (2 * frame.cloud.Size() < points_ || size == 0 || first_size_ == 0) return;
+    if (size < kFactor * first_size_ && first_size_ < kFactor * size) return;
+    if (frames_.empty()) size_ = size;
+    frames_.push_back(frame.index);
+  }
+  void AddTo(std::vector<std::string>* findings) const {
+    if (frames_.empty()) return;
+    findings->push_back(fmt::format(
+        "frame{} {}: {:.3g} m across where frame 0 is {:.3g} m: another unit of length, "
+        "or points far from the object",
+        frames_.size() > 1 ? "s" : "", Listed(frames_), size_, first_size_));
+  }
+
+ private:
+  static constexpr double kFactor = 50;  // no object shrinks or grows so much
+  Eigen::Index points_ = 0;
+  double first_size_ = 0, size_ = 0;  // m
+  std::vector<int> frames_;
+};
 
 // Components of the frames' scans and surfaces.
 class ComponentSurvey {
@@ -106,6 +137,7 @@ std::vector<std::string> ExamineFrames(const Recording& recording, int64_t most_
   const bool shows_surface =
       std::visit([](const auto& source) { return ShowsSurface(source); }, recording.frames);
   ComponentSurvey components;
+  SizeSurvey sizes;
   std::vector<int> repeats, with_repeated_points;
   Frame before;
   int64_t rows = 0;
@@ -116,11 +148,13 @@ std::vector<std::string> ExamineFrames(const Recording& recording, int64_t most_
     rows += frame.row_count;
     if (i > 0 && AreEqual(frame, before)) repeats.push_back(i);
     if (i > 0 && frame.repeated_count > 0) with_repeated_points.push_back(i);
+    sizes.Add(frame);
     if (shows_surface) components.Add(frame);
     if (also) also(frame);
     before = std::move(frame);
   }
   AddRepeats(repeats, i, &findings);
+  sizes.AddTo(&findings);
   components.AddTo(&findings);
   if (!with_repeated_points.empty()) {
     findings.push_back(

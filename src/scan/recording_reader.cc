@@ -6,7 +6,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
+#include "core/quantity.h"
 #include "geometry/mesh_io.h"
 #include "geometry/tri_mesh.h"
 #include "scan/frame_times.h"
@@ -23,8 +25,8 @@ FrameData ReadFrames(const Config& config, Recording* recording) {
   recording->frames = ReadFrameSource(frames, recording->data, &recording->warnings);
   return std::visit(
       [&](auto& source) {
-        const FrameTimes times =
-            ReadFrameTimes(frames, CountFrames(source), TimesInFiles(source), recording->data);
+        const FrameTimes times = ReadFrameTimes(frames, CountFrames(source), TimesInFiles(source),
+                                                recording->data, &recording->warnings);
         const std::vector<std::filesystem::path> headers = FilesWithHeaders(source);
         KeepFrames(times.chosen, &source);
         recording->times = times.OfChosen();
@@ -76,6 +78,18 @@ void WarnOfReferenceSize(const Frame& first, Recording* recording) {
                   size, frame_size));
 }
 
+void WarnOfJumps(const Frame& first, Recording* recording) {
+  const std::vector<RecordedGrip>& grips = recording->object.grips;
+  if (std::none_of(grips.begin(), grips.end(),
+                   [](const RecordedGrip& grip) { return grip.motion == GripMotion::kGiven; }))
+    return;
+  const double size = recording->reference.source == ReferenceSource::kFirstFrame
+                          ? BoundingBoxDiagonal(first.cloud.points)
+                          : ReferenceBox(recording->reference).diagonal().norm();
+  for (std::string& doubt : DoubtsOfJumps(recording->object, size, recording->times.back()))
+    recording->warnings.push_back(std::move(doubt));
+}
+
 // The first frame. Where it cannot be used, the error names the time of the first one that can.
 Frame LoadFirstFrame(const Recording& recording) {
   try {
@@ -88,8 +102,8 @@ Frame LoadFirstFrame(const Recording& recording) {
       } catch (const InputError&) {
         continue;
       }
-      throw InputError(fmt::format("{}; the first usable frame is {}: `from: {:g} s` begins there",
-                                   problem.what(), i, recording.times[i]));
+      throw InputError(fmt::format("{}; the first usable frame is {}: `from: {}` begins there",
+                                   problem.what(), i, TimeText(recording.times[i])));
     }
     throw;
   }
@@ -110,6 +124,7 @@ void UseFirstFrame(Recording* recording) {
       recording->frames);
   if (is_refined) first = LoadFrame(*recording, 0);
   recording->row_count = first.row_count;
+  if (HasTrackedPoints(*recording)) recording->faces = FacesByRow(first);
   const auto add = [recording](const std::vector<std::string>& doubts) {
     recording->warnings.insert(recording->warnings.end(), doubts.begin(), doubts.end());
   };
@@ -119,6 +134,7 @@ void UseFirstFrame(Recording* recording) {
                  recording->frames));
   WarnOfFrameSize(first, recording);
   WarnOfReferenceSize(first, recording);
+  WarnOfJumps(first, recording);
 }
 
 // Reads all but the frames; for some kinds of frames these, too.

@@ -46,6 +46,7 @@ DelimitedTable TableOfStep(const SteppedTable& steps, size_t step) {
   DelimitedTable table;
   table.file = steps.table.file;
   table.header = steps.table.header;
+  table.units = steps.table.units;
   table.commented_header = steps.table.commented_header;
   const std::vector<Eigen::Index>& rows = steps.rows.at(step);
   table.values = steps.table.values(rows, Eigen::all);

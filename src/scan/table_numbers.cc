@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <limits>
@@ -21,8 +22,17 @@ std::optional<double> ParseNumber(std::string_view text) {
   return value;
 }
 
+bool IsMissing(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (lower.starts_with("1.#") || lower.starts_with("-1.#")) return !lower.ends_with("#inf");
+  constexpr std::array<std::string_view, 7> kWords{"na", "n/a", "#n/a", "null", "none", "-", "--"};
+  return std::find(kWords.begin(), kWords.end(), lower) != kWords.end();
+}
+
 std::optional<double> ParseDecimal(std::string_view text) {
   if (const std::optional<double> value = ParseNumber(text)) return value;
+  if (IsMissing(text)) return std::numeric_limits<double>::quiet_NaN();
   std::string with_point(text);
   const size_t comma = with_point.find(',');
   if (comma == std::string::npos || with_point.find('.') != std::string::npos) return std::nullopt;

@@ -13,8 +13,14 @@ namespace lacuna {
 // not a number.
 std::optional<double> ParseNumber(std::string_view text);
 
-// The same for a number with a decimal point or a decimal comma.
+// The same for a number with a decimal point or a decimal comma, and NaN for what tables have in
+// the place of a value that is missing (IsMissing).
 std::optional<double> ParseDecimal(std::string_view text);
+
+// Whether an entry says that there is no value: "NA", "N/A", "#N/A", "NULL", "None" in any case,
+// "-",
+// "--", or what C programs of Windows print for NaN, such as "1.#QNAN".
+bool IsMissing(std::string_view text);
 
 // Whether the comma in a number may as well separate thousands: in "1,005", but not in "0,500" or
 // "1,5".

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/npy.h"
+#include "core/quantity.h"
 #include "geometry/hermite.h"
 #include "scan/table_header.h"
 
@@ -39,13 +42,23 @@ Interval FindInterval(const Eigen::VectorXd& times, double time) {
   return {right - 1, right, (time - times[right - 1]) / (times[right] - times[right - 1])};
 }
 
+// One of the unit; nothing where it is unknown or the text empty.
+std::optional<MeasuredQuantity> ParsedUnit(const std::string& unit) {
+  if (unit.empty()) return std::nullopt;
+  try {
+    return ParseAnyQuantity("1 " + unit);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
 Eigen::Map<const Eigen::VectorXd> AsVector(const std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
 // The values `names` in the headers of the frame files.
 TimeSeries ReadFromHeaders(const Config& config, const FrameData& frames,
-                           const std::vector<std::string>& names, double unit) {
+                           const std::vector<std::string>& names, const ColumnUnit& unit) {
   config.Choice<int>("from", {{"headers", 0}});
   if (config.Has("file")) config.Fail("file", "the values come `from: headers` already");
   if (frames.headers.empty())
@@ -56,8 +69,136 @@ TimeSeries ReadFromHeaders(const Config& config, const FrameData& frames,
   series.values.resize(static_cast<Eigen::Index>(names.size()), series.times.size());
   for (size_t k = 0; k < names.size(); ++k)
     series.values.row(static_cast<Eigen::Index>(k)) =
-        AsVector(HeaderValuesOf(frames.headers, names[k], unit, config.Text("unit", "N")))
-            .transpose();
+        AsVector(HeaderValuesOf(frames.headers, names[k], unit.si, unit.symbol)).transpose();
+  return series;
+}
+
+DelimitedTable TableOf(const Config& config, const DataLocation& data) {
+  const std::filesystem::path file = data.folder / config.Text("file");
+  if (!std::filesystem::exists(file)) config.Fail("file", "there is no file " + file.string());
+  DelimitedTable table = ReadTableOrArray(file);
+  if (table.values.rows() == 0) config.Fail("file", file.string() + " has no rows");
+  return table;
+}
+
+Eigen::VectorXd TimesOf(const Config& config, const DelimitedTable& table, const FrameData& frames,
+                        const std::vector<std::string>& names) {
+  const std::string time = config.Text("time", "");
+  if (time.empty()) {
+    if (table.values.rows() != static_cast<Eigen::Index>(frames.times.size()))
+      config.Fail("file",
+                  fmt::format("{} has {} rows for {} frames; name its column `time`",
+                              table.file.string(), table.values.rows(), frames.times.size()));
+    return AsVector(frames.times);
+  }
+  const double unit = ReadUnit(config, "time_unit", kTime, "s");
+  const Eigen::Index column = RequireColumn(table, time);
+  RefuseOtherUnit(table, column, unit, kTime, "time_unit");
+  for (const std::string& name : names)
+    if (RequireColumn(table, name) == column)
+      config.Fail("time", fmt::format("is column {} of {}, from which values are read, too; name "
+                                      "the columns of the values",
+                                      column + 1, table.file.string()));
+  return unit * table.values.col(column);
+}
+
+// Leaves out the rows without a value and averages those of equal times.
+void KeepMeasured(TimeSeries* series) {
+  Eigen::Index kept = 0, missing = 0, equal = 0;
+  double count = 0;  // of the rows that the last one kept is the mean of
+  for (Eigen::Index i = 0; i < series->times.size(); ++i) {
+    const Eigen::VectorXd value = series->values.col(i);
+    if (!value.allFinite()) {
+      ++missing;
+    } else if (kept > 0 && series->times[i] == series->times[kept - 1]) {
+      ++equal;
+      ++count;
+      series->values.col(kept - 1) += (value - series->values.col(kept - 1)) / count;
+    } else {
+      series->times[kept] = series->times[i];
+      series->values.col(kept++) = value;
+      count = 1;
+    }
+  }
+  std::vector<std::string> gaps;
+  if (missing > 0) gaps.push_back(fmt::format("rows without a value, left out: {}", missing));
+  if (equal > 0) gaps.push_back(fmt::format("rows with the time of another, averaged: {}", equal));
+  series->gaps = fmt::format("{}", fmt::join(gaps, ", "));
+  series->times.conservativeResize(kept);
+  series->values.conservativeResize(Eigen::NoChange, kept);
+}
+
+void CheckRows(const Config& config, const TimeSeries& series, Rows rows) {
+  const Eigen::VectorXd& times = series.times;
+  for (Eigen::Index i = 0; i < times.size(); ++i) {
+    const auto fail = [&](const std::string& problem) {
+      config.Fail("file", PlaceOfRow(series.table, i) + ": " + problem);
+    };
+    if (!std::isfinite(times[i])) fail("has no time");
+    if (i > 0 && times[i] < times[i - 1])
+      fail(fmt::format("its time, {}, is before that of the row above; sort the rows",
+                       TimeText(times[i])));
+    if (rows == Rows::kMeasured) continue;
+    if (!series.values.col(i).allFinite()) fail("has an entry that is missing or not finite");
+    if (i > 0 && times[i] == times[i - 1])
+      fail(
+          fmt::format("has the time of the row above, {}, perhaps because it was rounded; leave "
+                      "one of the two out",
+                      TimeText(times[i])));
+  }
+}
+
+// The text at the end of a column's name that is a unit of this dimension, in any case, behind a
+// character that is neither a letter nor a digit, the longest first.
+std::string UnitBehindName(const std::string& name, const Dimension& dimension) {
+  for (size_t at = name.find_first_of(" _/<,;:"); at != std::string::npos;
+       at = name.find_first_of(" _/<,;:", at + 1)) {
+    std::string rest(Trim(std::string_view(name).substr(at + 1)));
+    if (rest.ends_with('>')) rest.pop_back();
+    const std::optional<MeasuredQuantity> unit = ParsedUnit(rest);
+    if (unit ? unit->dimension.SameAs(dimension) : !UnitsInAnyCase(rest, dimension).empty())
+      return rest;
+  }
+  return "";
+}
+
+// Whether a text in brackets behind the name of a column is none of the units that are known, nor
+// one in another case, nor a voltage.
+bool IsRemark(const std::string& text, const Dimension& dimension) {
+  if (text == "V" || text == "mV") return false;
+  if (!ParsedUnit(text)) return UnitsInAnyCase(text, dimension).empty();
+  const bool is_number = text.find_first_not_of("0123456789") == std::string::npos;
+  const bool is_minimum = text == "min" && !dimension.SameAs(kTime);
+  return is_number || is_minimum;
+}
+
+// The name of the column of one component, or its number in a table without names.
+std::string ComponentIn(const Config& config, const DelimitedTable& table, int axis,
+                        const Dimension& dimension) {
+  const std::string key(1, "xyz"[axis]);
+  if (config.Has(key)) return config.Text(key);
+  std::string name = std::to_string(axis + 1);
+  if (!table.header.empty()) {
+    name = dimension.SameAs(kForce) && FindColumn(table, "f" + key) ? "f" + key : key;
+    if (!FindColumn(table, name))
+      config.Fail("file", fmt::format("{} has no column \"{}\"; say with `x`, `y` and `z` which of "
+                                      "its columns are meant: {}",
+                                      table.file.string(), name, fmt::join(table.header, ", ")));
+  }
+  return config.Text(key, name);
+}
+
+TimeSeries SeriesOf(const Config& config, DelimitedTable table, const FrameData& frames,
+                    const std::vector<std::string>& names, const ColumnUnit& unit, Rows rows) {
+  TimeSeries series;
+  series.times = TimesOf(config, table, frames, names);
+  series.values = ColumnsOf(table, names, unit.si);
+  RefuseOtherUnits(table, names, unit.si, unit.dimension, unit.key);
+  series.table = std::move(table);
+  CheckRows(config, series, rows);
+  if (rows == Rows::kMeasured) KeepMeasured(&series);
+  if (series.times.size() == 0)
+    config.Fail("file", series.table.file.string() + " has no row with a value");
   return series;
 }
 
@@ -79,24 +220,40 @@ double ReadUnit(const Config& config, const std::string& key, const Dimension& d
   }
 }
 
+ColumnUnit ReadColumnUnit(const Config& config, const std::string& key, const Dimension& dimension,
+                          const std::string& default_unit) {
+  return {ReadUnit(config, key, dimension, default_unit), dimension, key,
+          config.Text(key, default_unit)};
+}
+
 void RefuseOtherUnit(const DelimitedTable& table, Eigen::Index column, double unit,
                      const Dimension& dimension, const std::string& key) {
   if (table.header.empty()) return;
   const std::string& header = table.header[static_cast<size_t>(column)];
-  const std::string own = SplitColumnName(header).unit;
-  MeasuredQuantity named;
-  try {
-    named = ParseAnyQuantity("1 " + own);
-  } catch (const std::invalid_argument&) {
-    return;  // a remark
-  }
+  std::string own = UnitOfColumn(table, column);
+  if (own.starts_with("in ")) own.erase(0, 3);
+  if (own.empty()) own = UnitBehindName(header, dimension);
+  if (own.empty() || IsRemark(own, dimension)) return;
   constexpr double kRounding = 1e-9;
-  if (!named.dimension.SameAs(dimension) || std::abs(named.value - unit) <= kRounding * unit)
-    return;
+  const std::vector<std::string> meant =
+      ParsedUnit(own) ? std::vector<std::string>{own} : UnitsInAnyCase(own, dimension);
+  std::string other;  // of the same dimension
+  for (const std::string& symbol : meant) {
+    const MeasuredQuantity named = ParsedUnit(symbol).value();
+    if (!named.dimension.SameAs(dimension)) continue;
+    if (std::abs(named.value - unit) <= kRounding * unit) return;
+    if (other.empty()) other = symbol;
+  }
+  if (other.empty())
+    throw InputError(
+        {table.file.string()},
+        fmt::format("has a column \"{}\" in \"{}\", which is no unit of {}; name another column, "
+                    "or rename this one and convert its values",
+                    header, own, dimension.name));
   throw InputError({table.file.string()},
                    fmt::format("has a column \"{}\", but its values are read in another unit; say "
                                "`{}: {}` in recording.yaml, or rename the column",
-                               header, key, own));
+                               header, key, other));
 }
 
 void RefuseOtherUnits(const DelimitedTable& table, const std::vector<std::string>& names,
@@ -116,44 +273,21 @@ Eigen::MatrixXd ColumnsOf(const DelimitedTable& table, const std::vector<std::st
 }
 
 TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data, const FrameData& frames,
-                          double unit, const Dimension& dimension, const std::string& key) {
-  const std::vector<std::string> names = {config.Text("x", "1"), config.Text("y", "2"),
-                                          config.Text("z", "3")};
-  TimeSeries series = ReadColumns(config, data, frames, names, unit);
-  RefuseOtherUnits(series.table, names, unit, dimension, key);
-  return series;
+                          const ColumnUnit& unit, Rows rows) {
+  if (config.Has("from"))
+    return ReadFromHeaders(config, frames, {config.Text("x"), config.Text("y"), config.Text("z")},
+                           unit);
+  DelimitedTable table = TableOf(config, data);
+  std::vector<std::string> names;
+  for (int axis = 0; axis < 3; ++axis)
+    names.push_back(ComponentIn(config, table, axis, unit.dimension));
+  return SeriesOf(config, std::move(table), frames, names, unit, rows);
 }
 
 TimeSeries ReadColumns(const Config& config, const DataLocation& data, const FrameData& frames,
-                       const std::vector<std::string>& names, double unit) {
+                       const std::vector<std::string>& names, const ColumnUnit& unit, Rows rows) {
   if (config.Has("from")) return ReadFromHeaders(config, frames, names, unit);
-  const std::filesystem::path file = data.folder / config.Text("file");
-  if (!std::filesystem::exists(file)) config.Fail("file", "there is no file " + file.string());
-  TimeSeries series;
-  series.table = ReadTableOrArray(file);
-  const DelimitedTable& table = series.table;
-  if (table.values.rows() == 0) config.Fail("file", file.string() + " has no rows");
-  const std::string time = config.Text("time", "");
-  series.values = ColumnsOf(table, names, unit);
-  if (!time.empty()) {
-    const double time_unit = ReadUnit(config, "time_unit", kTime, "s");
-    const Eigen::Index column = RequireColumn(table, time);
-    RefuseOtherUnit(table, column, time_unit, kTime, "time_unit");
-    series.times = time_unit * table.values.col(column);
-  } else if (table.values.rows() == static_cast<Eigen::Index>(frames.times.size())) {
-    series.times = AsVector(frames.times);
-  } else {
-    config.Fail("file", fmt::format("{} has {} rows for {} frames; name its column `time`",
-                                    file.string(), table.values.rows(), frames.times.size()));
-  }
-  for (Eigen::Index i = 0; i < series.times.size(); ++i) {
-    const bool ascends = i == 0 || series.times[i] > series.times[i - 1];
-    if (!std::isfinite(series.times[i]) || !ascends || !series.values.col(i).allFinite()) {
-      config.Fail("file", PlaceOfRow(table, i) +
-                              ": is not finite or does not follow the row before in time");
-    }
-  }
-  return series;
+  return SeriesOf(config, TableOf(config, data), frames, names, unit, rows);
 }
 
 Eigen::VectorXd InterpolateLinearly(const Eigen::VectorXd& times,
@@ -174,7 +308,7 @@ Eigen::Vector3d InterpolateSmoothly(const Eigen::VectorXd& times, const Eigen::M
     if (k == 0) return {values.col(0), slope(0)};
     if (k == last) return {values.col(last), slope(last - 1)};
     const double before = times[k] - times[k - 1], behind = times[k + 1] - times[k];
-    return {values.col(k), (behind * slope(k - 1) + before * slope(k)) / (before + behind)};
+    return {values.col(k), VelocityOfParabola(slope(k - 1), before, slope(k), behind)};
   };
   return Interpolate(knot(left), knot(right), times[right] - times[left], t).position;
 }

@@ -16,29 +16,47 @@ struct TimeSeries {
   DelimitedTable table;    // the file it was read from
   Eigen::VectorXd times;   // k, s, ascending
   Eigen::MatrixXd values;  // c × k, SI, finite
+  std::string gaps;        // what was left out or averaged (Rows::kMeasured); empty: nothing
 };
 
-// Reads `file` (.npy or text): the columns `names` (names, or numbers from 1) in multiples of
-// `unit` (SI), and the column `time` in `time_unit` (default s). Without `time` the file must have
-// one row for each of `frames`. With `from: headers` in place of `file` the values are those of
-// these names in the headers of the frame files (table_header.h). Throws InputError naming file and
-// line (of an .npy file: row) when it has no rows, a value is not finite or the times do not
-// ascend.
-TimeSeries ReadColumns(const Config& config, const DataLocation& data, const FrameData& frames,
-                       const std::vector<std::string>& names, double unit);
+// The unit of columns, which stands at `key` of a mapping in recording.yaml.
+struct ColumnUnit {
+  double si = 1;  // of one such unit
+  Dimension dimension;
+  std::string key, symbol;
+};
+// Throws InputError where the unit is unknown or has another dimension.
+ColumnUnit ReadColumnUnit(const Config& config, const std::string& key, const Dimension& dimension,
+                          const std::string& default_unit);
 
-// The same for the components of a vector, the columns named by `x`, `y`, `z` (default 1, 2, 3).
-// Their unit has this dimension and stands at `key` (RefuseOtherUnit).
+// Whether each row of a file must have a value and a time of its own. Of measurements, rows without
+// a value are left out, and those of equal times, which were rounded, are averaged.
+enum class Rows { kAll, kMeasured };
+
+// Reads `file` (.npy or text): the columns `names` (names, or numbers from 1) in `unit`, and the
+// column `time` in `time_unit` (default s). Without `time` the file must have one row for each of
+// `frames`. With `from: headers` in place of `file` the values are those of these names in the
+// headers of the frame files (table_header.h). Throws InputError naming file and line (of an .npy
+// file: row) when it has no rows, a value is not finite or the times do not ascend, when a column
+// is that of the times, too, and when the table gives another unit (RefuseOtherUnit).
+TimeSeries ReadColumns(const Config& config, const DataLocation& data, const FrameData& frames,
+                       const std::vector<std::string>& names, const ColumnUnit& unit, Rows rows);
+
+// The same for the components of a vector, the columns named by `x`, `y`, `z`. By default they are
+// called fx, fy, fz, of a force, or x, y, z; those of a table without names are 1, 2, 3.
 TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data, const FrameData& frames,
-                          double unit, const Dimension& dimension, const std::string& key);
+                          const ColumnUnit& unit, Rows rows);
 
 // The SI value of one of the unit at `key`, e.g. 1e-3 for "mm".
 double ReadUnit(const Config& config, const std::string& key, const Dimension& dimension,
                 const std::string& default_unit);
 
-// Throws InputError naming the table where the name of the column has a unit of this dimension in
-// brackets, as in "Force [kN]", that is not `unit` (SI). `key` is the one of recording.yaml that
-// gives the unit. A table without names has no such columns.
+// Throws InputError naming the table where it gives another unit for the column than `unit`: in the
+// line below the names, in the name in brackets, as in "Force [kN]", or at its end where that is a
+// unit of this dimension, as in "F/kN", "F_kN" and "F in kN". A unit of another dimension, and one
+// of which only the case differs ("KN"), is refused, too. Other words in brackets are remarks, as
+// in "Force (left)", and so is "(min)", a minimum. `key` is the one of recording.yaml that gives
+// the unit. A table without names has no such columns.
 void RefuseOtherUnit(const DelimitedTable& table, Eigen::Index column, double unit,
                      const Dimension& dimension, const std::string& key);
 

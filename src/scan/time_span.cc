@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
+#include "core/quantity.h"
 #include "scan/time_series.h"
 
 namespace lacuna {
@@ -54,7 +56,8 @@ Eigen::MatrixXd Within(const Eigen::VectorXd& times,
 }  // namespace
 
 double TimeMargin(const std::vector<double>& frame_times) {
-  constexpr double kShareOfInterval = 1e-3, kRounding = 1e-9;
+  constexpr double kShareOfInterval = 1e-3;
+  constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();
   const double first = frame_times.front(), last = frame_times.back();
   const double rounding = kRounding * std::max(std::abs(first), std::abs(last));
   if (frame_times.size() < 2) return rounding;
@@ -82,10 +85,8 @@ std::string DoubtOfTimeSpan(const Eigen::VectorXd& times,
   const bool is_still = goes_on && within < 0.05 * range;
   const bool is_short = end - begin < 0.01 * duration && mistake != nullptr;
   if (!is_long && !is_still && !is_short) return "";
-  std::string text = fmt::format(
-      "its times are {:g} s to {:g} s, those of the recording {:g} s to "
-      "{:g} s",
-      begin, end, first, last);
+  std::string text = fmt::format("its times are {} to {}, those of the recording {} to {}",
+                                 TimeText(begin), TimeText(end), TimeText(first), TimeText(last));
   if (is_still)
     text += fmt::format(", in which it changes by {:.2g} % of its range", 100 * within / range);
   if (mistake != nullptr) return text + fmt::format("; they would fit {}", mistake->what);

@@ -11,7 +11,7 @@ namespace lacuna {
 
 // The difference, s, up to which a time in another file is that of a frame: a thousandth of the
 // mean interval between the frames, so that times may be rounded, and at least their rounding as
-// numbers. `frame_times`: s, ascending, at least one.
+// floating-point numbers. `frame_times`: s, ascending, at least one.
 double TimeMargin(const std::vector<double>& frame_times);
 
 // Whether a series at `times` (k ≥ 1, s, ascending) covers the time from `first` to `last` (s) up

@@ -27,6 +27,12 @@ TEST(Quantity, ConvertsUnitsToSi) {
   EXPECT_DOUBLE_EQ(ParseQuantity("5 µm", kLength), 5e-6);
   EXPECT_DOUBLE_EQ(ParseQuantity("1e-4", kDimensionless), 1e-4);
   EXPECT_DOUBLE_EQ(ParseQuantity("25 %", kDimensionless), 0.25);
+  EXPECT_DOUBLE_EQ(ParseQuantity("2 kgf", kForce), 19.6133);
+  EXPECT_DOUBLE_EQ(ParseQuantity("3 daN", kForce), 30);
+  EXPECT_NEAR(ParseQuantity("1 lbf", kForce), 4.448222, 1e-6);
+  EXPECT_DOUBLE_EQ(ParseQuantity("4 msec", kTime), 4e-3);
+  for (const char* torque : {"2 mNm", "2 mN m", "2 mN.m", "2 Nmm"})
+    EXPECT_DOUBLE_EQ(ParseAnyQuantity(torque).value, 2e-3) << torque;
 }
 
 void ExpectRefused(const char* text, const Dimension& dimension, const char* part) {
@@ -73,6 +79,21 @@ TEST(Quantity, DeterminesTheDimensionOfAnyUnit) {
   for (const char* text : {"", "m", "3 mmm", "nan s", "3 m/"}) {
     EXPECT_THROW(ParseAnyQuantity(text), std::invalid_argument) << text;
   }
+}
+
+TEST(Quantity, FindsUnitsInAnyCase) {
+  using testing::ElementsAre;
+  using testing::UnorderedElementsAre;
+  EXPECT_THAT(UnitsInAnyCase("KN", kForce), ElementsAre("kN"));
+  EXPECT_THAT(UnitsInAnyCase("mn", kForce), UnorderedElementsAre("mN", "MN"));
+  EXPECT_THAT(UnitsInAnyCase("Deg", kAngle), ElementsAre("deg"));
+  EXPECT_TRUE(UnitsInAnyCase("KN", kLength).empty());
+  EXPECT_TRUE(UnitsInAnyCase("cell 1", kForce).empty());
+}
+
+TEST(Quantity, AnEpochIsWrittenToTheMillisecond) {
+  EXPECT_EQ(TimeText(0.25), "0.25 s");
+  EXPECT_EQ(TimeText(1.7e9 + 1.15), "1700000001.15 s");
 }
 
 TEST(Quantity, ATimeIsWrittenInMillisecondsBelowASecond) {

@@ -53,7 +53,21 @@ TEST(QualisysTsv, TakesTimesFromTheFrequencyWhereItHasNone) {
   EXPECT_EQ(tracks.positions[1].col(0), Eigen::Vector3d(1, 2, 3.5));
   EXPECT_DOUBLE_EQ(tracks.times[1], 0.005);
   const MarkerTracks replaced = ReadMarkerTracks(folder.Path() / "a.tsv", {}, FileTimes::kReplaced);
-  EXPECT_EQ(replaced.times.size(), 0);
+  EXPECT_EQ(replaced.times.size(), 3) << "for a comparison";
+}
+
+TEST(QualisysTsv, WarnsOfTimesThatContradictTheFrequency) {
+  const TestFolder folder;
+  const auto warnings = [&](double interval) {
+    std::string rows;
+    for (int k = 0; k < 40; ++k)
+      rows += fmt::format("{}\t{:.5f}\t1\t2\t3\t4\t5\t6\n", k, k * interval);
+    const std::string names = "Frame\tTime\ttip X\ttip Y\ttip Z\tb X\tb Y\tb Z\n";
+    return ReadMarkerTracks(folder.Write("a.tsv", Qualisys(rows, "40", names)), {}).warnings;
+  };
+  EXPECT_THAT(warnings(0.005), IsEmpty());
+  EXPECT_THAT(warnings(0.1), ElementsAre(HasSubstr("its header states 200 Hz, but its times follow "
+                                                   "each other at 10 Hz")));
 }
 
 TEST(QualisysTsv, RefusesWhatDoesNotFitItsHeader) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "scan/table_numbers.h"
 #include "scan/test_files.h"
 
@@ -113,14 +115,60 @@ TEST(DelimitedTable, TabsMayDivideNamesWithOtherDelimiters) {
 
 TEST(DelimitedTable, DoubtsAFirstLineOfNumbers) {
   EXPECT_THAT(
-      Table("0.5,1.25,#N/A\n1,2,3\n").notes,
+      Table("0.5,1.25,lost\n1,2,3\n").notes,
       ElementsAre(HasSubstr("t.csv:1: the first line was taken for the names of the columns "
-                            "because of \"#N/A\", but 2 of its 3 entries are numbers")));
+                            "because of \"lost\", but 2 of its 3 entries are numbers")));
   EXPECT_THAT(Table("0,1,2\n1.5,2.5,3.5\n1.5,2.5,3.25\n").notes,
               ElementsAre(HasSubstr("the first line, 0, 1, 2, was read as a row of data")));
   EXPECT_THAT(Table("t,1,2,3\n0.1,2,3,4\n").notes, IsEmpty()) << "numbers of channels";
   EXPECT_THAT(Table("0,1,2\n3,4,5\n6,7,8\n").notes, IsEmpty()) << "a table of whole numbers";
   EXPECT_THAT(Table("0.5,1,2\n1.5,2.5,3.5\n1.5,2.5,3.25\n").notes, IsEmpty());
+}
+
+TEST(DelimitedTable, TakesALineOfUnitsBelowTheNames) {
+  for (const char* content : {"\"Time\",\"Load\"\n\"(s)\",\"(N)\"\n\"0.5\",\"2\"\n",
+                              "Time;Load\ns;N\n0,5;2\n", "Time,Load\n[s],[N]\n0.5,2\n"}) {
+    const DelimitedTable table = Table(content);
+    EXPECT_THAT(table.header, ElementsAre("Time", "Load")) << content;
+    EXPECT_THAT(table.units, ElementsAre("s", "N")) << content;
+    EXPECT_EQ(table.values.row(0), Eigen::RowVector2d(0.5, 2)) << content;
+    EXPECT_EQ(UnitOfColumn(table, 1), "N");
+  }
+  EXPECT_THAT(ErrorOf([] { Table("Time,Load\nnow,here\n1,2\n"); }), HasSubstr("got \"now\""));
+}
+
+TEST(DelimitedTable, JoinsTheNamesOfGroupsAndOfTheirColumns) {
+  const DelimitedTable pandas = Table("time,m0,,,m1,,\n,x,y,z,x,y,z\n0,1,2,3,4,5,6\n");
+  EXPECT_THAT(pandas.header, ElementsAre("time", "m0_x", "m0_y", "m0_z", "m1_x", "m1_y", "m1_z"));
+  const DelimitedTable vicon =
+      Table("Trajectories\n100\n,,Bar:m0,,\nFrame,Sub Frame,X,Y,Z\n,,mm,mm,mm\n1,0,7,8,9\n");
+  EXPECT_THAT(vicon.header, ElementsAre("Frame", "Sub Frame", "Bar:m0_X", "Bar:m0_Y", "Bar:m0_Z"));
+  EXPECT_EQ(UnitOfColumn(vicon, 2), "mm");
+  EXPECT_THAT(vicon.line, ElementsAre(6));
+  EXPECT_EQ(vicon.values(0, 4), 9);
+}
+
+TEST(DelimitedTable, SkipsTheNumberOfPointsAndTheMarkOfTheirNames) {
+  EXPECT_EQ(Table("2\n1 2 3\n4 5 6\n").values.rows(), 2);
+  const DelimitedTable cloud = Table("//X Y Z\n2\n1 2 3\n4 5 6\n");
+  EXPECT_THAT(cloud.header, ElementsAre("X", "Y", "Z"));
+  EXPECT_EQ(cloud.values.rows(), 2);
+  EXPECT_EQ(Table("5\n6\n").values.rows(), 2) << "a column of numbers";
+}
+
+TEST(DelimitedTable, ReadsWordsForMissingValues) {
+  for (const char* word : {"", "nan", "-nan(ind)", "NULL", "None", "NA", "#N/A", "-", "1.#QNAN"}) {
+    const DelimitedTable table = Table("t,x\n0,1\n1," + std::string(word) + "\n");
+    EXPECT_TRUE(std::isnan(table.values(1, 1))) << word;
+  }
+  EXPECT_THAT(ErrorOf([] { Table("t,x\n0,1\n1,lost\n"); }), HasSubstr("got \"lost\""));
+}
+
+TEST(DelimitedTable, SaysThatDatesAreNotRead) {
+  EXPECT_THAT(
+      ErrorOf([] { Table("t,x\n2024-05-01 12:00:00.0,1\n"); }),
+      HasSubstr("expected a number, such as seconds since the first row: dates and times of "
+                "day are not read"));
 }
 
 }  // namespace

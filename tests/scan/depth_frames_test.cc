@@ -80,5 +80,22 @@ TEST_F(DepthFramesTest, WarnOfASizeThatSuggestsAnotherDepthUnit) {
   EXPECT_THAT(recording.warnings, ElementsAre(HasSubstr("across; check depth_unit")));
 }
 
+TEST_F(DepthFramesTest, WarnOfASizeThatIsThatOfThePoses) {
+  WriteImage("a.png", 0.2);
+  std::string far = Camera("right", "[a.png]");
+  far.replace(far.find("0, 1, 0, 0"), 10, "0, 1, 0, 9e5");
+  const Recording recording = Load(DepthYaml(Camera("left", "[a.png]") + far));
+  EXPECT_THAT(recording.warnings, testing::Contains(HasSubstr(
+                                      "across; check length_unit, mm, in which the translations "
+                                      "of the cameras are read: these are 900 m apart")));
+}
+
+TEST_F(DepthFramesTest, TellPosesThatAreTransposed) {
+  WriteImage("a.png", 0.2);
+  std::string camera = Camera("left", "[a.png]");
+  camera.replace(camera.find("1, 500,  0, 0, 0, 1"), 19, "1, 0,  0, 0, 500, 1");
+  EXPECT_THAT(LoadError(DepthYaml(camera)), HasSubstr("has its numbers column by column"));
+}
+
 }  // namespace
 }  // namespace lacuna

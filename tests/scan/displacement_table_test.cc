@@ -182,6 +182,31 @@ TEST_F(DisplacementTable, TakesColumnsThatAreNamed) {
               HasSubstr("w"));
 }
 
+// The quality of the points counts also where only places and displacements are named.
+TEST_F(DisplacementTable, LeavesOutFailedPointsWhereColumnsAreNamed) {
+  const auto points_with = [&](const std::string& column, const std::string& failed,
+                               const std::string& fine, const std::string& more = "") {
+    std::string rows = "a,b,c,da,db,dc," + column + "\n";
+    for (int i = 0; i < 8; ++i)
+      rows += std::to_string(i) + "," + std::to_string(i * i) + "," + std::to_string(i % 3) +
+              ",1,2,3," + (i == 4 ? failed : fine) + "\n";
+    folder_.Write("a.csv", rows);
+    const Recording recording =
+        Load(Yaml("  kind: points\n  files: [a.csv]\n"
+                  "  columns: {x: a, y: b, z: c, u: da, v: db, w: dc" +
+                  more + "}\n"));
+    return LoadFrame(recording, 0).cloud.Size();
+  };
+  EXPECT_EQ(points_with("SIGMA", "-1", "0.1"), 7);
+  EXPECT_EQ(points_with("STATUS_FLAG", "5", "4"), 7);
+  EXPECT_EQ(points_with("returnStatus", "-1", "2"), 7);
+  EXPECT_EQ(points_with("returnStatus", "1", "2"), 8);
+  EXPECT_EQ(points_with("found", "-3", "5"), 8);
+  EXPECT_EQ(points_with("found", "-3", "5", ", status: found"), 7);
+  EXPECT_EQ(points_with("found", "", "5", ", status: found"), 7);
+  EXPECT_EQ(points_with("STATUS_FLAG", "5", "4", ", status: STATUS_FLAG"), 7);
+}
+
 TEST_F(DisplacementTable, NamesAFileWhosePointsAreOthers) {
   folder_.Write("f/a.txt", Rows(0, 8, 0));
   folder_.Write("f/b.txt", Rows(20, 28, 0));
@@ -378,6 +403,18 @@ TEST_F(DisplacementTable, NamesAHeaderThatLacksAValue) {
               HasSubstr("gives \"Kraft\" in kN; recording.yaml says N"));
   EXPECT_THAT(error("{from: headers, file: a.csv, along: [0, 1, 0], value: force}"),
               HasSubstr("from: headers` already"));
+}
+
+TEST_F(DisplacementTable, GivesAPathInItsUnit) {
+  folder_.Write("f/s_1.txt", "# X: 0 mm\n" + Nodemap(100, 0, 0));
+  folder_.Write("f/s_2.txt", "# X: 3 mm\n" + Nodemap(102, 1, 1));
+  const auto yaml = [](const std::string& unit) {
+    return Yaml("  {kind: points, files: f/*.txt}\n",
+                "gripped: [{nodes: [1], path: {from: headers, x: X, y: X, z: X, length_unit: " +
+                    unit + "}}]\n");
+  };
+  EXPECT_NEAR(Load(yaml("mm")).object.grips.at(0).displacements(0, 1), 3e-3, 1e-15);
+  EXPECT_THAT(LoadError(yaml("m")), HasSubstr("gives \"X\" in mm; recording.yaml says m"));
 }
 
 // Three steps of eight points, in any order, as one file.

@@ -22,11 +22,19 @@ TEST(FrameList, FillsPatternsAsPrintfDoes) {
 }
 
 TEST(FrameList, ComparesNumbersInNamesAsNumbers) {
-  EXPECT_TRUE(NaturalLess("scan_9.ply", "scan_10.ply"));
-  EXPECT_FALSE(NaturalLess("scan_10.ply", "scan_9.ply"));
-  EXPECT_TRUE(NaturalLess("a2/scan_10.ply", "a10/scan_9.ply"));
-  EXPECT_FALSE(NaturalLess("scan_9.ply", "scan_9.ply"));
-  EXPECT_TRUE(NaturalLess("scan_009.ply", "scan_10.ply"));
+  // Each list is in the order that is expected.
+  const std::vector<std::vector<std::string>> lists = {
+      {"scan_9.ply", "scan_10.ply"},
+      {"a2/scan_10.ply", "a10/scan_9.ply"},
+      {"scan_009.ply", "scan_10.ply"},
+      {"s_0.off", "s_0.25.off", "s_0.5.off", "s_1.off", "s_1.125.off", "s_10.0.off"},
+      {"s_000.25.off", "s_000.5.off", "s_001.125.off"},
+      {"s_1.2.off", "s_1.9.off", "s_1.10.off", "s_1.11.off"}};
+  for (const std::vector<std::string>& sorted : lists) {
+    std::vector<std::string> names(sorted.rbegin(), sorted.rend());
+    SortNaturally(&names);
+    EXPECT_EQ(names, sorted);
+  }
 }
 
 TEST(FrameList, FindsTheNumberMissingFromASequence) {

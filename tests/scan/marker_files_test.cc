@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -221,6 +222,19 @@ TEST(MarkerCsv, HasTimesInTheirUnit) {
   EXPECT_DOUBLE_EQ(ReadMarkerCsv(file, columns).times[1], 0.01);
 }
 
+// `rate` in recording.yaml replaces the times.
+TEST(MarkerCsv, KeepsTimesThatAreReplacedForAComparison) {
+  const TestFolder folder;
+  MarkerColumns columns;
+  columns.time = "t";
+  const auto read = [&](const char* rows) {
+    const auto file = folder.Write("a.csv", std::string("t,a_x,a_y,a_z\n") + rows);
+    return ReadMarkerCsv(file, columns, FileTimes::kReplaced).times;
+  };
+  EXPECT_EQ(read("0,1,2,3\n0.1,1,2,3\n"), Eigen::Vector2d(0, 0.1));
+  EXPECT_EQ(read("0,1,2,3\n0,1,2,3\n").size(), 0);
+}
+
 TEST(MarkerCsv, WithoutALineOfNamesSaysSo) {
   const TestFolder folder;
   const auto file = folder.Write("a.csv", "0,1,2,3\n1,1,2,3\n");
@@ -279,6 +293,9 @@ TEST(Trc, RefusesContradictoryCounts) {
   EXPECT_THAT(message(MakeTrc("3", "3")), HasSubstr("bad.trc:4:1: names 2 markers"));
   EXPECT_THAT(message(MakeTrc("x", "2")), HasSubstr("NumFrames: got \"x\""));
   EXPECT_THAT(message("hello\n"), HasSubstr("is not a TRC file"));
+  std::string blanks = MakeTrc("3", "2");
+  std::replace(blanks.begin(), blanks.end(), '\t', ' ');
+  EXPECT_THAT(message(blanks), HasSubstr("bad.trc:2:1: has no tabs"));
   EXPECT_THAT(message(MakeTrc("3", "2") + "4\t0.03\tq\n"), HasSubstr("bad.trc:10:8: got \"q\""));
 }
 
@@ -419,6 +436,34 @@ TEST(C3d, RefusesANumberOfFramesThatIsNoNumber) {
         ErrorOf([&] { ReadC3d(file); }),
         HasSubstr("a.c3d: gives " + fmt::format("{}", frames) + " as its number of frames"));
   }
+}
+
+// The file of MakeC3d with this rate in its header and, unless it is 0, this one in POINT:RATE.
+std::string WithRates(float in_header, float in_parameter) {
+  std::string content = MakeC3d(kIntel, true);
+  C3dWriter header(kIntel), rate(kIntel), parameter(kIntel);
+  header.Real(in_header);
+  content.replace(20, 4, header.Content());
+  rate.Byte(4), rate.Byte(0), rate.Real(in_parameter);
+  parameter.Parameter("RATE", 1, rate.Content());
+  if (in_parameter == 0) return content;
+  const size_t at = content.find("UNITS") - 2;  // in front of the last parameter
+  content.insert(at, parameter.Content());
+  return content.erase(1024, parameter.Content().size());
+}
+
+TEST(C3d, TakesTheRateFromItsParametersWhereTheHeaderHasNone) {
+  const TestFolder folder;
+  const auto read = [&](float in_header, float in_parameter, FileTimes use) {
+    return ReadC3d(folder.Write("a.c3d", WithRates(in_header, in_parameter)), use);
+  };
+  EXPECT_DOUBLE_EQ(read(0, 10, FileTimes::kUsed).times[2], 0.2);
+  EXPECT_THAT(ErrorOf([&] { read(0, 0, FileTimes::kUsed); }),
+              HasSubstr("a.c3d: has no frame rate; give `rate:"));
+  EXPECT_EQ(read(0, 0, FileTimes::kReplaced).times.size(), 0);
+  EXPECT_TRUE(read(50, 50, FileTimes::kUsed).warnings.empty());
+  EXPECT_THAT(read(50, 10, FileTimes::kUsed).warnings,
+              ElementsAre(HasSubstr("its header states 50 Hz and POINT:RATE 10 Hz")));
 }
 
 TEST(C3d, AShorterRecordingDoesNotFollowTheFieldsOfItsTrial) {

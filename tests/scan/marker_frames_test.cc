@@ -15,6 +15,7 @@ namespace {
 using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 
 TEST_F(RecordingTest, LoadsMarkersWithGapsAndFollowsThem) {
@@ -78,6 +79,22 @@ TEST_F(RecordingTest, WarnsWhenAMarkerFileContradictsTheUnit) {
       Load(Yaml("  {kind: markers, file: m.trc}\n", "reference: {from: mesh, file: box.ply}\n"));
   EXPECT_THAT(recording.warnings,
               ElementsAre(HasSubstr("says that its lengths are in m; recording.yaml says mm")));
+}
+
+TEST_F(RecordingTest, WarnsWhenTheColumnsOfMarkersContradictTheUnit) {
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  const auto yaml_for = [&](const std::string& x, const std::string& y) {
+    folder_.Write("m.csv", "a_x" + x + ",a_y" + y + ",a_z" + x + "\n1,2,3\n");
+    return Yaml("  {kind: markers, file: m.csv, columns: {x: \"*_x" + x + "\", y: \"*_y" + y +
+                    "\", z: \"*_z" + x + "\"}}\n",
+                "reference: {from: mesh, file: box.ply}\n");
+  };
+  EXPECT_THAT(Load(yaml_for(" [cm]", " [cm]")).warnings,
+              ElementsAre(HasSubstr("says that its lengths are in cm; recording.yaml says mm")));
+  EXPECT_THAT(Load(yaml_for(" [mm]", " [mm]")).warnings, IsEmpty());
+  EXPECT_THAT(Load(yaml_for(" (left)", " (left)")).warnings, IsEmpty());
+  EXPECT_THAT(LoadError(yaml_for(" [mm]", " [cm]")),
+              HasSubstr("m.csv:1:1: gives coordinates in cm beside others in mm"));
 }
 
 TEST_F(RecordingTest, WrittenMarkerFramesAreReadBack) {

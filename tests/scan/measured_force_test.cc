@@ -40,16 +40,45 @@ TEST_F(ForcesOfRecording, MustHaveARow) {
 
 TEST_F(ForcesOfRecording, NameTheLineOfABadRow) {
   const std::string columns = ", time: t, x: x, y: y, z: z";
-  folder_.Write("load.csv", "# a remark\nt,x,y,z\n\n0,0,0,1\n1,0,inf,1\n");
-  EXPECT_THAT(Error("file: load.csv" + columns), HasSubstr("load.csv:5: is not finite or does"));
-  folder_.Write("load.csv", "# a remark\nt,x,y,z\n1,0,0,1\n1,0,0,1\n");
-  EXPECT_THAT(Error("file: load.csv" + columns), HasSubstr("load.csv:4: is not finite or does"));
-  folder_.Write("load.csv", "t,x,y,z\n,0,0,1\n");
-  EXPECT_THAT(Error("file: load.csv" + columns), HasSubstr("load.csv:2: is not finite or does"));
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2, 4);  // twice the time 0
+  folder_.Write("load.csv", "# a remark\nt,x,y,z\n\n,0,0,1\n1,0,inf,1\n");
+  EXPECT_THAT(Error("file: load.csv" + columns), HasSubstr("load.csv:4: has no time"));
+  folder_.Write("load.csv", "# a remark\nt,x,y,z\n1,0,0,1\n0.5,0,0,1\n");
+  EXPECT_THAT(Error("file: load.csv" + columns),
+              HasSubstr("load.csv:4: its time, 0.5 s, is before that of the row above"));
+  folder_.Write("load.csv", "t,x,y,z\n0,0,,1\n");
+  EXPECT_THAT(Error("file: load.csv" + columns), HasSubstr("load.csv has no row with a value"));
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2, 4);
+  rows(0, 0) = 1;  // the time
   WriteNpy(folder_ / "load.npy", rows);
   EXPECT_THAT(Error("file: load.npy, time: \"1\", x: \"2\", y: \"3\", z: \"4\""),
-              HasSubstr("load.npy: row 2: is not finite or does"));
+              HasSubstr("load.npy: row 2: its time, 0 s, is before"));
+}
+
+TEST_F(ForcesOfRecording, LeaveOutMissingValuesAndAverageThoseOfEqualTimes) {
+  folder_.Write("load.csv", "t,fx,fy,fz\n0,0,0,1\n0,0,0,2\n0,0,0,6\n0.5,0,NULL,1\n1,0,0,1\n");
+  WriteClouds(2);
+  const Recording recording = Load(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz}\n",
+                                        "forces: [{name: pull, file: load.csv, time: t}]\n"));
+  const MeasuredForce& pull = recording.object.forces.at(0);
+  EXPECT_EQ(pull.times, Eigen::Vector2d(0, 1));
+  EXPECT_NEAR(pull.forces(2, 0), 3, 1e-15);
+  EXPECT_THAT(DescribeForce(pull), HasSubstr("rows without a value, left out: 1, rows with the "
+                                             "time of another, averaged: 2"));
+}
+
+// The times would be taken for the component x.
+TEST_F(ForcesOfRecording, HaveTheirOwnColumns) {
+  WriteClouds(2);
+  folder_.Write("load.csv", "t,x,fx,fy,fz\n0,9,1,2,3\n1,9,1,2,3\n");
+  const std::string frames = "  {kind: points, files: f/*.csv, rate: 1 Hz}\n";
+  const Recording recording = Load(Yaml(frames, "forces: [{file: load.csv, time: t}]\n"));
+  EXPECT_EQ(recording.object.forces.at(0).forces.col(0), Eigen::Vector3d(1, 2, 3));
+  folder_.Write("load.csv", "t,F1,F2,F3\n0,1,2,3\n1,1,2,3\n");
+  EXPECT_THAT(Error("file: load.csv, time: t"),
+              HasSubstr("load.csv has no column \"x\"; say with"));
+  EXPECT_THAT(Error("file: load.csv, time: t, x: t, y: F2, z: F3"), HasSubstr("is column 1 of"));
+  folder_.Write("load.csv", "0,1,2,3\n1,1,2,3\n");
+  EXPECT_THAT(Error("file: load.csv, time: '1'"), HasSubstr("from which values are read, too"));
 }
 
 }  // namespace

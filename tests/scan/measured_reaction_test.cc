@@ -65,6 +65,28 @@ TEST_F(MeasuredReactionTest, AnotherUnitInTheNameOfAColumnIsRefused) {
   EXPECT_THAT(force("Force [kN]", ", unit: kN, time_unit: ms"), HasSubstr("say `time_unit: s`"));
 }
 
+TEST_F(MeasuredReactionTest, TheUnitOfAColumnMayStandInOtherPlaces) {
+  const auto error = [&](const std::string& header, const std::string& more = "") {
+    folder_.Write("u.csv", header + "0,1\n1,2\n");
+    return LoadError(
+        WithForce("{file: u.csv, time: \"1\", along: [0, 0, 1], value: \"2\", "
+                  "deviation: 1 mN" +
+                  more + "}"));
+  };
+  for (const char* name : {"F/kN", "F_kN", "F_KN", "F in kN", "F <kN>", "\"F, kN\"", "F (in kN)",
+                           "F [KN]", "F [kn]"}) {
+    EXPECT_THAT(error(std::string("t,") + name + "\n"), HasSubstr("say `unit: kN`")) << name;
+    EXPECT_EQ(error(std::string("t,") + name + "\n", ", unit: kN"), "no error") << name;
+  }
+  EXPECT_THAT(error("t,F\ns,kN\n"), HasSubstr("say `unit: kN`")) << "a line of units";
+  EXPECT_THAT(error("t,F\n(ms),(N)\n"), HasSubstr("say `time_unit: ms`"));
+  EXPECT_THAT(error("t,F [lbf]\n"), HasSubstr("say `unit: lbf`"));
+  for (const char* name : {"F [kg]", "F [g]", "F [V]", "F (mV)", "F [mm]", "F [%]"})
+    EXPECT_THAT(error(std::string("t,") + name + "\n"), HasSubstr("no unit of a force")) << name;
+  for (const char* name : {"Load [cell 1]", "F [1]", "F (left)", "F [N]", "F/N", "F_h", "F [n]"})
+    EXPECT_EQ(error(std::string("t,") + name + "\n"), "no error") << name;
+}
+
 TEST_F(MeasuredReactionTest, ADirectionIsNormalisedAndTheOppositeForceChangesItsSign) {
   const Recording recording = Load(
       WithForce("{file: load.csv, time: t, time_unit: ms, along: [0, 0, 2], value: fz, unit: N, "

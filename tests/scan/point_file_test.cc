@@ -52,6 +52,18 @@ std::string PcdHeader(const std::string& data, int count) {
          std::to_string(count) + "\nDATA " + data + "\n";
 }
 
+// PCL writes such an element, and takes the size of its image for that of the cloud.
+TEST(PointFile, ACameraInAPlyFileDoesNotChangeTheNumberOfPoints) {
+  const TestFolder folder;
+  for (const char* viewport : {"1 2", "640 480"}) {
+    std::string content = PlyHeader("ascii", "float", 4);
+    content.insert(content.find("end_header"),
+                   "element camera 1\nproperty int viewportx\nproperty int viewporty\n");
+    const auto file = folder.Write("a.ply", content + Text() + viewport + "\n");
+    EXPECT_EQ(ReadPointFile(file, {}).Size(), 4) << viewport;
+  }
+}
+
 TEST(PointFile, ReadsPlyOfEveryKindToItsOwnPrecision) {
   const TestFolder folder;
   const std::vector<std::pair<std::string, double>> contents = {

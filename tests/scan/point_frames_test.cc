@@ -57,6 +57,14 @@ TEST_F(RecordingTest, NotesThatAZeroNormalDiscardsAllGivenOnes) {
   EXPECT_THAT(tracked.notes, testing::ElementsAre(testing::EndsWith("of the given ones is used")));
 }
 
+TEST_F(RecordingTest, APointWithoutAFiniteNormalStays) {
+  folder_.Write("p.csv", "x,y,z,nx,ny,nz\n" + std::string("0,0,0,0,0,1\n9,0,0,nan,nan,nan\n") +
+                             "0,9,0,0,0,1\n9,9,1,0,0,1\n");
+  const Frame frame = LoadFrame(Load(Yaml("  {kind: points, files: [p.csv]}\n")), 0);
+  EXPECT_EQ(frame.cloud.Size(), 4);
+  EXPECT_FALSE(frame.cloud.HasNormals());
+}
+
 // The lines of a table in which `zeros` of the points are (0, 0, 0).
 std::string WithZeros(int points, int zeros) {
   std::string text = "x,y,z\n" + Cloud(points, 200);

@@ -53,19 +53,31 @@ TEST_F(RecordingTest, AGripRotatesAndShiftsSmoothlyAlongItsPath) {
               HasSubstr("r"));
 }
 
-TEST_F(RecordingTest, ATurnMustNotJumpByAFullTurn) {
+TEST_F(RecordingTest, ATurnIsMadeContinuous) {
   WriteClouds(2);
-  const auto error = [&](int last) {
-    folder_.Write("arm.csv",
-                  fmt::format("t,x,y,z,rx,ry,rz\n0,0,0,0,0,0,170\n1,0,0,0,0,0,{}\n", last));
-    return LoadError(
+  const auto load = [&](const std::string& last) {
+    folder_.Write("arm.csv", "t,x,y,z,rx,ry,rz\n0,0,0,0,0,0,170\n1,0,0,0," + last + "\n");
+    return Load(
         Yaml("  kind: points\n  files: f/*.csv\n  rate: 1 Hz\n",
              "gripped: [{name: arm, sphere: {center: [0, 0, 0], radius: 5 mm}, path: {file: "
              "arm.csv, time: t, x: x, y: y, z: z, turn: {x: rx, y: ry, z: rz, unit: deg, about: "
              "[0, 0, 0]}}}]\n"));
   };
-  EXPECT_THAT(error(-170), AllOf(HasSubstr("arm.csv:3"), HasSubstr("more than 180°")));
-  EXPECT_EQ(error(190), "no error");
+  EXPECT_THAT(ErrorOf([&] { load("170,0,0"); }),
+              AllOf(HasSubstr("arm.csv:3"), HasSubstr("more than 180°")));
+  // Robots give −170° where the angle passes 180°.
+  const double degree = std::numbers::pi / 180;
+  for (const char* last : {"0,0,190", "0,0,-170"})
+    EXPECT_NEAR(load(last).object.grips.at(0).rotations(2, 1), 190 * degree, 1e-12) << last;
+}
+
+TEST_F(RecordingTest, APathHasItsOwnColumns) {
+  WriteClouds(2);
+  folder_.Write("arm.csv", "t,x,y,z\n0,0,0,0\n1,7,8,9\n");
+  const Recording recording =
+      Load(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz}\n",
+                "gripped: [{nodes: [1], path: {file: arm.csv, time: t, length_unit: m}}]\n"));
+  EXPECT_EQ(recording.object.grips.at(0).displacements.col(1), Eigen::Vector3d(7, 8, 9));
 }
 
 TEST_F(RecordingTest, PartsMayBeHeldAlongSomeAxesOnly) {

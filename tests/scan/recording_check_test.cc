@@ -31,6 +31,18 @@ TEST_F(RecordingCheckTest, TellsFramesThatRepeatTheOneBefore) {
                                                 "(frames 3, 4)")));
 }
 
+TEST_F(RecordingCheckTest, TellsFramesOfAnotherSize) {
+  WriteClouds(4);
+  std::istringstream rows(Cloud(12));
+  std::string small = "x,y,z\n";
+  for (double x, y, z; rows >> x && rows.ignore() >> y && rows.ignore() >> z;)
+    small += std::to_string(x / 1000) + "," + std::to_string(y / 1000) + "," +
+             std::to_string(z / 1000) + "\n";
+  folder_.Write("f/p2.csv", small);
+  EXPECT_THAT(Findings(),
+              ElementsAre(HasSubstr("frame 2: 0.000114 m across where frame 0 is 0.114 m")));
+}
+
 TEST_F(RecordingCheckTest, TellsSmallComponentsWithSizeAndPlace) {
   WriteClouds(3, 200);
   std::string debris = "x,y,z\n" + Cloud(200);

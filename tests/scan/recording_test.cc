@@ -223,6 +223,21 @@ TEST_F(RecordingTest, DoubtsLoadsInAnotherUnitOfTime) {
       ElementsAre(HasSubstr("the path of grip 1 (")));
 }
 
+TEST_F(RecordingTest, WarnsOfARateThatContradictsTheTimesOfTheFile) {
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  std::string rows = "t,a_x,a_y,a_z,b_x,b_y,b_z\n";
+  for (int k = 0; k < 41; ++k) rows += fmt::format("{},0,0,0,50,0,0\n", 0.1 * k);
+  folder_.Write("m.csv", rows);
+  const auto warnings = [&](const std::string& rate) {
+    return Load(Yaml("  {kind: markers, file: m.csv, columns: {time: t}, rate: " + rate + "}\n",
+                     "reference: {from: mesh, file: box.ply, length_unit: m}\n"))
+        .warnings;
+  };
+  const auto warning = HasSubstr("those of the files 4 s (10 Hz on average)");
+  EXPECT_THAT(warnings("12 Hz"), testing::Contains(warning));
+  EXPECT_THAT(warnings("10.1 Hz"), testing::Not(testing::Contains(warning)));
+}
+
 TEST_F(RecordingTest, HasTheNameOfItsFolder) {
   folder_.Write("bar/p.csv", "x,y,z\n" + Cloud(12));
   folder_.Write("bar/recording.yaml",
@@ -232,7 +247,7 @@ TEST_F(RecordingTest, HasTheNameOfItsFolder) {
 }
 
 TEST_F(RecordingTest, DoubtsATableWhoseFirstRowWasTakenForNames) {
-  folder_.Write("p.csv", "0.5,1.5,#N/A\n" + Cloud(12));
+  folder_.Write("p.csv", "0.5,1.5,lost\n" + Cloud(12));
   EXPECT_THAT(
       Load(Yaml("  {kind: points, files: [p.csv], columns: {x: '1', y: '2', z: '3'}}\n")).warnings,
       ElementsAre(HasSubstr("the first line was taken for the names of the columns")));

@@ -46,5 +46,19 @@ TEST(TimeSpan, OfASeriesMayBeRounded) {
   EXPECT_GT(TimeMargin({1e3}), 0) << "one frame has no interval";
 }
 
+// A margin of a billionth of the time would be 1.7 s.
+TEST(TimeSpan, OfClocksThatCountFrom1970IsCheckedAsFinely) {
+  constexpr double kEpoch = 1.7e9;
+  std::vector<double> frames;
+  for (int k = 0; k < 19; ++k) frames.push_back(kEpoch + 0.1 * k);
+  const double margin = TimeMargin(frames), first = frames.front(), last = frames.back();
+  EXPECT_TRUE(CoversTimes(Eigen::Vector2d(first, last), first, last, margin));
+  EXPECT_FALSE(CoversTimes(Eigen::Vector2d(first, kEpoch + 1.15), first, last, margin));
+  EXPECT_THAT(
+      DoubtOfTimeSpan(Eigen::Vector2d(kEpoch, kEpoch + 20), Eigen::RowVector2d(0, 1), first, last),
+      HasSubstr("its times are 1700000000 s to 1700000020 s, those of the recording "
+                "1700000000 s to 1700000001.8 s"));
+}
+
 }  // namespace
 }  // namespace lacuna
