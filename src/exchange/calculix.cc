@@ -102,8 +102,9 @@ DisplacementDifference CompareDisplacements(const Eigen::MatrixXd& expected,
   if (expected.size() == 0) return difference;
   difference.largest_displacement = lengths(expected).maxCoeff();
   const Eigen::VectorXd errors = lengths(found - expected);
+  difference.largest_difference = errors.maxCoeff();
   const double scale = std::max(difference.largest_displacement, 1e-300);
-  difference.largest = errors.maxCoeff() / scale;
+  difference.largest = difference.largest_difference / scale;
   difference.rms = std::sqrt(errors.squaredNorm() / static_cast<double>(errors.size())) / scale;
   return difference;
 }

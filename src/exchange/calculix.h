@@ -28,11 +28,16 @@ bool HasCalculix();
 CalculixResult RunCalculix(const std::filesystem::path& inp, const std::filesystem::path& folder,
                            Eigen::Index nodes, const std::vector<double>& frames);
 
-// Differences of the displacements of two programs at some times, relative to the largest
-// displacement of a node in `expected` at any time.
+// Differences of the displacements of two programs over nodes and times. Relative ones refer to the
+// largest displacement of a node in `expected` at any time.
 struct DisplacementDifference {
-  double largest_displacement = 0;  // m
-  double largest = 0, rms = 0;      // over nodes and times, relative
+  double largest_displacement = 0;  // m, in `expected`
+  double largest_difference = 0;    // m
+  double largest = 0, rms = 0;      // relative
+
+  // Whether a body of this size, m, is displaced in `expected` by more than rounding errors.
+  // Relative differences mean nothing otherwise.
+  bool IsDisplaced(double size) const { return largest_displacement > 1e-9 * size; }
 };
 // Both 3n × times, m; of the same size (CHECK).
 DisplacementDifference CompareDisplacements(const Eigen::MatrixXd& expected,

@@ -92,18 +92,28 @@ std::string DensityText(const ImportedMaterial* material) {
                      is_known ? "\n" : kNotInFile);
 }
 
-// `count` is the number of materials in the file.
-std::string MaterialText(const ImportedMaterial* material, size_t count) {
+// Why the material may not be that of the whole body; empty where it is.
+std::string DoubtOfMaterial(const ImportedMaterial& material, const ImportedModel& model) {
+  const auto elements = static_cast<size_t>(model.mesh.TetCount());
+  const std::string name = CommentText(material.name);
+  if (material.element_count > 0 && material.element_count < elements)
+    return fmt::format("{} of {} elements have {}, which is taken for the whole body",
+                       material.element_count, elements, name);
+  if (material.element_count == 0 && model.materials.size() > 1)
+    return fmt::format("the file has {} materials; that of {} is taken for the whole body",
+                       model.materials.size(), name);
+  return "";
+}
+
+std::string MaterialText(const ImportedMaterial* material, const ImportedModel& model) {
   const bool is_known = HasElasticity(material);
   std::string text = fmt::format("material: {{law: {}, young_modulus: {} Pa, poisson_ratio: {}}}",
                                  SaintVenantKirchhoffCard().type, ModulusOf(material),
                                  is_known ? *material->poisson_ratio : kSoftPoisson);
   if (!is_known) return text + kNotInFile;
   std::vector<std::string> doubts;
-  if (count > 1)
-    doubts.push_back(
-        fmt::format("the file has {} materials; that of {} is taken for the whole body", count,
-                    CommentText(material->name)));
+  if (std::string doubt = DoubtOfMaterial(*material, model); !doubt.empty())
+    doubts.push_back(std::move(doubt));
   if (material->is_instantaneous)
     doubts.emplace_back("the modulus of the shortest times (MODULI=INSTANTANEOUS), which relaxes");
   if (!doubts.empty()) text += fmt::format("   # TO DO: {}", fmt::join(doubts, "; "));
@@ -118,7 +128,7 @@ std::string ExperimentText(const ImportedModel& model, const std::string& name,
       "#   lacuna fit {}.yaml\n"
       "schema_version: 1\nname: {}\noutput: {}\n",
       source, name, QuotedText(name), QuotedText(name + "_run"));
-  text += DensityText(material) + MaterialText(material, model.materials.size());
+  text += DensityText(material) + MaterialText(material, model);
   for (const ImportedMaterial& other : model.materials)
     if (&other != material)
       text += fmt::format("# The file has another material, {}, which is not used\n",
@@ -155,6 +165,11 @@ ImportedModel InSiUnits(ImportedModel model, InpUnits units) {
 }
 
 const ImportedMaterial* MaterialOfBody(const ImportedModel& model) {
+  const ImportedMaterial* of_most = nullptr;
+  for (const ImportedMaterial& material : model.materials)
+    if (material.element_count > (of_most == nullptr ? 0 : of_most->element_count))
+      of_most = &material;
+  if (of_most != nullptr) return of_most;
   for (const ImportedMaterial& material : model.materials)
     if (material.young_modulus) return &material;
   return model.materials.empty() ? nullptr : &model.materials.front();

@@ -18,8 +18,9 @@ enum class InpUnits { kMetre, kMillimetre };
 // The model with all numbers in SI units.
 ImportedModel InSiUnits(ImportedModel model, InpUnits units);
 
-// The material that the experiment gives to the whole body: the first one with an elasticity, or
-// else the first one; null where the model has none. It belongs to `model`.
+// The material that the experiment gives to the whole body: the one that the sections of the file
+// give to most tetrahedra; without sections the first one with an elasticity, or else the first
+// one; null where the model has none. It belongs to `model`.
 const ImportedMaterial* MaterialOfBody(const ImportedModel& model);
 
 // Writes into `folder`, which is created,
@@ -27,8 +28,9 @@ const ImportedMaterial* MaterialOfBody(const ImportedModel& model);
 //   nodes_SET.txt       the numbers of the nodes of each node set, from 0, with the name of the set
 //                       as an Identifier (unique_names.h)
 //   recording.yaml      reference and the node sets; what has to be completed is marked TO DO
-//   NAME.yaml           the experiment, with MaterialOfBody; marked TO DO where it is one of
-//                       several, or its modulus the instantaneous one
+//   NAME.yaml           the experiment, with MaterialOfBody; marked TO DO where not
+//                       all tetrahedra are known to have it, or its modulus is the instantaneous
+//                       one
 // and returns their names. `model` is in SI units, and `source` is the file that it was read from.
 // Throws InputError where a file exists already, and for a name that an experiment cannot have: one
 // that is no file name (IsFileName), or "recording".

@@ -1,6 +1,7 @@
 #include "exchange/inp_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -8,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/error.h"
 #include "exchange/inp_lines.h"
 #include "geometry/tet_soup.h"
 
@@ -45,6 +47,7 @@ class Reader {
     if (keyword == "ELSET") return ReadSet("ELSET", elements_, &element_sets_, &element_set_order_);
     if (keyword == "MATERIAL") return ReadMaterial();
     if (keyword == "ELASTIC" || keyword == "DENSITY") return ReadProperty(keyword == "ELASTIC");
+    if (keyword == "SOLID SECTION") return ReadSection();
     if (keyword == "INSTANCE") return ReadInstance();
     if (keyword == "INCLUDE")
       lines_.Fail("*INCLUDE is not read: put the content of that file in its place");
@@ -64,6 +67,18 @@ class Reader {
   void NotRead() {
     model_.not_read.push_back(
         fmt::format("line {}: {}", lines_.KeywordLine(), lines_.KeywordText()));
+  }
+
+  // The data lines of a section give a thickness, which a solid does not have.
+  bool ReadSection() {
+    const std::string* elements = lines_.Parameter("ELSET");
+    const std::string* material = lines_.Parameter("MATERIAL");
+    if (elements != nullptr && material != nullptr)
+      sections_.push_back({*elements, *material,
+                           fmt::format("line {}: {}", lines_.KeywordLine(), lines_.KeywordText())});
+    else
+      NotRead();
+    return SkipData();
   }
 
   // The data lines of an instance move and turn its part.
@@ -112,14 +127,45 @@ class Reader {
     return has_next_;
   }
 
+  // The number of nodes of a tetrahedron of this type, with any letters behind C3D4 or C3D10; 0 for
+  // other elements.
+  static size_t NodesOfTet(std::string_view type) {
+    for (const size_t size : {4, 10}) {
+      const std::string plain = fmt::format("C3D{}", size);
+      if (type.starts_with(plain) && type.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ",
+                                                            plain.size()) == std::string_view::npos)
+        return size;
+    }
+    return 0;
+  }
+
+  // Whether elements of this type fill a volume: solids, also acoustic and thermal ones, continuum
+  // shells and cohesive elements.
+  static bool IsOtherVolume(std::string_view type) {
+    return type.find("C3D") != std::string_view::npos || type.starts_with("SC") ||
+           type.starts_with("CSS") || type.starts_with("COH3D");
+  }
+
+  bool SkipElements(const std::string& type) {
+    const int line = lines_.KeywordLine();
+    NotRead();
+    skips_elements_ = true;
+    skipped_types_.insert(type);
+    long long count = 0;
+    for (bool continues = false; NextData(); continues = lines_.EndsWithComma())
+      count += !continues;
+    if (IsOtherVolume(type)) soup_.AddOther("of type " + type, line, count);
+    return has_next_;
+  }
+
   bool ReadElements() {
     const std::string type = lines_.RequiredParameter("TYPE");
-    const size_t size = type == "C3D10" ? 10 : 4;
-    if (type != "C3D10" && type != "C3D4") {
-      NotRead();
-      skips_elements_ = true;
-      return SkipData();
-    }
+    const size_t size = NodesOfTet(type);
+    if (size == 0) return SkipElements(type);
+    if (const std::string plain = fmt::format("C3D{}", size); type != plain)
+      variants_.insert(fmt::format(
+          "elements of type {} are read as {}: Lacuna has no hybrid or modified tetrahedra", type,
+          plain));
     std::set<int>* set = SetOf("ELSET", &element_sets_, &element_set_order_);
     while (NextData()) {
       const int line = lines_.Line(), label = lines_.Label(0, "the number of an element");
@@ -263,7 +309,9 @@ class Reader {
       if (!is_elasticity) continue;
       material.poisson_ratio = lines_.Number(1, "Poisson's ratio");
       if (*material.poisson_ratio <= -1 || *material.poisson_ratio >= 0.5)
-        lines_.Fail("Poisson's ratio must lie between -1 and 0.5");
+        lines_.Fail(
+            "Poisson's ratio must lie between -1 and 0.5; for an incompressible material write "
+            "0.49");
     }
     if (!value) lines_.Fail(fmt::format("*{} has no values", keyword));
     return has_next_;
@@ -294,9 +342,33 @@ class Reader {
     return named;
   }
 
+  // How many elements each material has. Sections of sets or materials that the file does not have
+  // are not read.
+  void AssignMaterials() {
+    for (const Section& section : sections_) {
+      const auto elements = element_sets_.find(section.elements);
+      const auto material =
+          std::find_if(model_.materials.begin(), model_.materials.end(),
+                       [&](const ImportedMaterial& one) { return one.name == section.material; });
+      if (elements == element_sets_.end() || material == model_.materials.end())
+        model_.not_read.push_back(section.line);
+      else
+        material->element_count += elements->second.size();
+    }
+  }
+
   ImportedModel Finish() {
+    if (soup_.tets.empty() && soup_.others == 0)
+      throw InputError(
+          {file_.string()},
+          fmt::format("has no tetrahedra (C3D4, C3D10 and their variants){}",
+                      skipped_types_.empty() ? ""
+                                             : fmt::format("; its elements are of type {}",
+                                                           fmt::join(skipped_types_, ", "))));
     TetMeshFile read = FinishTetMesh(soup_, file_);
-    model_.notes = read.notes;
+    model_.notes.assign(variants_.begin(), variants_.end());
+    model_.notes.insert(model_.notes.end(), read.notes.begin(), read.notes.end());
+    AssignMaterials();
     std::vector<int> kept(soup_.nodes.size(), -1), all(soup_.tets.size());
     for (Eigen::Index n = 0; n < read.node_in_file.size(); ++n)
       kept[static_cast<size_t>(read.node_in_file[n])] = static_cast<int>(n);
@@ -314,6 +386,12 @@ class Reader {
   TetSoup soup_;
   Numbers nodes_, elements_;
   std::vector<int> node_labels_;  // in the order of soup_.nodes
+  struct Section {
+    std::string elements, material;
+    std::string line;  // as in ImportedModel::not_read
+  };
+  std::vector<Section> sections_;
+  std::set<std::string> variants_, skipped_types_;  // notes on types of tetrahedra; other types
   Sets node_sets_, element_sets_;
   std::vector<std::string> node_set_order_, element_set_order_;
   ImportedModel model_;

@@ -1,12 +1,13 @@
 // Reads mesh, sets and material of an input file of Abaqus or CalculiX.
 //
-// Read are *NODE, *ELEMENT with TYPE=C3D4 or C3D10, *NSET and *ELSET (also GENERATE and names of
-// other sets; *NSET also with ELSET, the nodes of these elements), and *MATERIAL with *ELASTIC and
-// *DENSITY; *HEADING is skipped. The file is flat:
-// node numbers are unique, as CalculiX requires. Every other keyword, elements of other types
-// included, is listed in `not_read`. No other file is opened: *INCLUDE and, where data would have
-// to be read, INPUT=… are refused. Numbers stay in the file's own units, which an .inp file does
-// not state.
+// Read are *NODE, *ELEMENT with TYPE=C3D4 or C3D10 and their variants such as C3D10MH (hybrid,
+// modified, …), which become plain tetrahedra with a note, *NSET and *ELSET (also GENERATE and
+// names of other sets; *NSET also with ELSET, the nodes of these elements), *MATERIAL with *ELASTIC
+// and *DENSITY, and the ELSET and MATERIAL of *SOLID SECTION; *HEADING is skipped. The file is
+// flat: node numbers are unique, as CalculiX requires. Every other keyword, elements of lines and
+// surfaces included, is listed in `not_read`. No other file is opened: *INCLUDE and, where data
+// would have to be read, INPUT=… are refused. Numbers stay in the file's own units, which an .inp
+// file does not state.
 #ifndef LACUNA_EXCHANGE_INP_READER_H_
 #define LACUNA_EXCHANGE_INP_READER_H_
 
@@ -24,6 +25,8 @@ struct ImportedMaterial {
   std::optional<double> young_modulus, poisson_ratio, density;
   // Whether the modulus is that of the shortest times (MODULI=INSTANTANEOUS), which relaxes.
   bool is_instantaneous = false;
+  // Tetrahedra that a *SOLID SECTION gives this material; 0 also where the file has no section.
+  size_t element_count = 0;
 };
 
 struct ImportedModel {
@@ -39,8 +42,8 @@ struct ImportedModel {
 // Throws InputError with file and line for a line that does not follow the format, numbers that are
 // not finite, nodes or sets that do not exist, numbers that appear twice, sets of more than 30
 // million entries in all or with a parameter that is not known, coordinates that are not Cartesian,
-// an instance that is moved or turned, an elasticity that is not isotropic or depends on
-// temperature, or a mesh that ReadTetMesh would refuse (mesh_io.h).
+// an instance that is moved or turned, volume elements other than tetrahedra, an elasticity that is
+// not isotropic or depends on temperature, or a mesh that ReadTetMesh would refuse (mesh_io.h).
 ImportedModel ReadInp(const std::filesystem::path& file);
 
 }  // namespace lacuna

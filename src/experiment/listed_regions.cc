@@ -37,26 +37,41 @@ NumberedNodes NodesOfSurface(int count, const ReferenceShape& reference,
   return {.count = count};
 }
 
+// Why the vertices of a surface do not have the numbers of the file.
+constexpr const char* kShifted =
+    "repeated vertices and those that no triangle uses are left out, which would shift the "
+    "numbers; "
+    "remove them from the file";
+
+NumberedNodes NodesOfMesh(const ReferenceShape& reference, const MeshSettings& settings) {
+  if (LowerExtension(reference.file) == ".stl")
+    return {.problem = "an STL file does not number its vertices; convert it, for instance to OBJ"};
+  const TriMeshFile given = ReadTriMesh(reference.file);
+  if (given.vertex_in_file.size() != given.vertices_in_file) return {.problem = kShifted};
+  return NodesOfSurface(static_cast<int>(given.vertices_in_file), reference, settings);
+}
+
+NumberedNodes NodesOfFirstFrame(const Recording& recording, const MeshSettings& settings) {
+  const Frame first = HasTrackedPoints(recording) ? LoadFrame(recording, 0) : Frame{};
+  if (first.triangles.cols() == 0)
+    return {.problem =
+                "the reference shape is a surface that is reconstructed from the first frame, "
+                "whose nodes have no numbers"};
+  if (first.cloud.Size() + first.dropped_count != first.row_count) return {.problem = kShifted};
+  return NodesOfSurface(static_cast<int>(first.row_count), recording.reference, settings);
+}
+
 NumberedNodes NodesOfReference(const Recording& recording, const MeshSettings& settings) {
   const ReferenceShape& reference = recording.reference;
   switch (reference.source) {
     case ReferenceSource::kTetMesh:
       return NodesOfTetMesh(reference);
     case ReferenceSource::kMesh:
-      if (LowerExtension(reference.file) == ".stl")
-        return {.problem =
-                    "an STL file does not number its vertices; convert it, for instance to "
-                    "OBJ"};
-      return NodesOfSurface(static_cast<int>(ReadTriMesh(reference.file).mesh.vertices.cols()),
-                            reference, settings);
+      return NodesOfMesh(reference, settings);
     case ReferenceSource::kFirstFrame:
       break;
   }
-  if (HasTrackedPoints(recording) && LoadFrame(recording, 0).triangles.cols() > 0)
-    return NodesOfSurface(static_cast<int>(recording.row_count), reference, settings);
-  return {.problem =
-              "the reference shape is a surface that is reconstructed from the first frame, "
-              "whose nodes have no numbers"};
+  return NodesOfFirstFrame(recording, settings);
 }
 
 }  // namespace

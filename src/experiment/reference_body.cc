@@ -29,10 +29,10 @@ TriMesh ReferenceSurface(const ReferenceRequest& request, std::vector<std::strin
   if (HasTrackedPoints(request.recording)) {
     const Frame frame = LoadFrame(request.recording, request.first_frame);
     const bool has_triangles = frame.triangles.cols() > 0;
-    if (has_triangles && frame.cloud.Size() != frame.row_count) {
+    if (has_triangles && frame.dropped_count > 0) {
       throw InputError(fmt::format("{}: frame {}: the reference frame lacks {} of its {} points",
                                    request.recording.file.string(), request.first_frame,
-                                   frame.row_count - frame.cloud.Size(), frame.row_count));
+                                   frame.dropped_count, frame.row_count));
     }
     if (has_triangles) return {frame.cloud.points, frame.triangles};
   }

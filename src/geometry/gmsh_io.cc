@@ -16,6 +16,23 @@ namespace {
 constexpr int kTet = 4;
 constexpr int kQuadraticTet = 11;
 
+// Elements of at most two dimensions, from Gmsh's header GmshDefines.h: points, lines, triangles,
+// quadrangles and polygons of all orders.
+bool IsFlat(long long type) {
+  return (type >= 1 && type <= 3) || (type >= 8 && type <= 10) || type == 15 || type == 16 ||
+         (type >= 20 && type <= 28) || type == 34 || (type >= 36 && type <= 70) ||
+         (type >= 84 && type <= 86) || (type >= 133 && type <= 135) || type == 138;
+}
+
+std::string NameOf(long long type) {
+  const char* kind = type == 5 || type == 12 || type == 17   ? "hexahedron"
+                     : type == 6 || type == 13 || type == 18 ? "prism"
+                     : type == 7 || type == 14 || type == 19 ? "pyramid"
+                     : type >= 29 && type <= 33              ? "tetrahedron of another order"
+                                                             : "volume element";
+  return fmt::format("a {} (type {} of Gmsh)", kind, type);
+}
+
 void SkipSection(const std::string& name, TextScanner& scanner) {
   do {
     scanner.ExpectLine("$End" + name);
@@ -89,7 +106,10 @@ void ReadElements22(TextScanner& scanner, const NodeNumbers& numbers, TetSoup& s
     scanner.ExpectLine(fmt::format("element {} of {}", e + 1, count));
     scanner.Integer("the number of the element");
     const long long type = scanner.Integer("the type of the element");
-    if (type != kTet && type != kQuadraticTet) continue;
+    if (type != kTet && type != kQuadraticTet) {
+      if (!IsFlat(type)) soup.AddOther(NameOf(type), scanner.Line());
+      continue;
+    }
     const long long tags = Count(scanner, "the number of tags");
     for (long long tag = 0; tag < tags; ++tag) scanner.Integer("a tag");
     AddTet(type, numbers, scanner, soup);
@@ -107,7 +127,10 @@ void ReadElements41(TextScanner& scanner, const NodeNumbers& numbers, TetSoup& s
     const long long count = Count(scanner, "the number of elements in the block");
     for (long long e = 0; e < count; ++e) {
       scanner.ExpectLine(fmt::format("element {} of {} in the block", e + 1, count));
-      if (type != kTet && type != kQuadraticTet) continue;
+      if (type != kTet && type != kQuadraticTet) {
+        if (!IsFlat(type)) soup.AddOther(NameOf(type), scanner.Line());
+        continue;
+      }
       scanner.Integer("the number of the element");
       AddTet(type, numbers, scanner, soup);
     }

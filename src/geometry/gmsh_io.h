@@ -12,8 +12,8 @@
 
 namespace lacuna {
 
-// Reads tetrahedra of order 1 or 2; other elements and sections are skipped. Throws InputError with
-// file and line.
+// Reads tetrahedra of order 1 or 2, and counts other volume elements; points, lines, faces and
+// other sections are skipped. Throws InputError with file and line.
 TetSoup ReadGmsh(const std::filesystem::path& file);
 
 enum class GmshVersion { k22, k41 };

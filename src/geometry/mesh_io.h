@@ -23,13 +23,18 @@ inline constexpr double kFarthestCoordinate = 1e100;
 
 struct TriMeshFile {
   TriMesh mesh;
+  Eigen::VectorXi vertex_in_file;     // index of each vertex among those of the file, ascending
+  Eigen::Index vertices_in_file = 0;  // STL: the corners of all triangles
+  bool is_mended = false;  // whether MendSurface changed more than a sound file of its format needs
   std::vector<std::string> notes;
 };
 
 // Reads .ply, .obj, .stl and .off, in text or binary form where the format has both;
 // polygon_soup.h says which variants. Polygons, concave ones too, are cut into triangles
-// (polygon_triangles.h), those with more than 10 000 corners are refused; vertices of an STL file
-// that are equal are merged. The surface may have any topology; CheckSurface examines it.
+// (polygon_triangles.h), those with more than 10 000 corners are refused. MendSurface
+// (mended_surface.h) merges vertices at the same place, drops repeated and degenerate triangles and
+// unused vertices, and turns triangles that are seen from inside, each with a note. The surface may
+// still have any topology; CheckSurface examines it.
 TriMeshFile ReadTriMesh(const std::filesystem::path& file);
 
 struct TetMeshFile {
@@ -39,15 +44,16 @@ struct TetMeshFile {
 };
 
 // Reads the following formats:
-//   .msh          Gmsh 2.2 and 4.1, text; tetrahedra of order 1 or 2, other elements are skipped
-//   .node, .ele   TetGen, order 1; either file is named and both are read
-//   .mesh         MEDIT, text, order 1
-//   .tet          lines "v x y z" and "t i j k l", indices from 0
-//   .txt          the numbers of nodes and tetrahedra, the nodes, the tetrahedra (indices from 0)
+//   .msh          Gmsh 2.2 and 4.1, text; tetrahedra of order 1 or 2, points, lines and faces are
+//   skipped .node, .ele   TetGen, order 1; either file is named and both are read .mesh MEDIT,
+//   text, order 1 .tet          lines "v x y z" and "t i j k l", indices from 0 .txt          the
+//   numbers of nodes and tetrahedra, the nodes, the tetrahedra (indices from 0)
 // Tetrahedra with negative volume are reoriented, repetitions of a tetrahedron with the same list
 // of nodes (Gmsh 2.2 writes one for each physical group) and unused nodes are dropped, each with a
 // note.
-// Tetrahedra that have no volume or a repeated node, overlap across a face, or share one face among
+// Volume elements that are no tetrahedra are refused, because a part of the body would be missing.
+// Tetrahedra that have no volume or a repeated node, have their midside nodes on each other's edges
+// (as in the order of another format), overlap across a face, or share one face among
 // three are refused, and so are lines behind those that a count announces.
 TetMeshFile ReadTetMesh(const std::filesystem::path& file);
 // The files that it reads for this name: two of TetGen, one of any other format.

@@ -12,7 +12,6 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <string_view>
 
 #include "core/error.h"
@@ -40,24 +39,6 @@ long long CornerNumber(std::string_view corner, const TextScanner& scanner) {
   return vertex;
 }
 
-// Merges vertices with equal coordinates.
-class VertexMerger {
- public:
-  explicit VertexMerger(PolygonSoup* soup) : soup_(*soup) {}
-
-  size_t Add(const Eigen::Vector3d& point) {
-    // Adding 0 turns −0 into 0.
-    const std::array<double, 3> key{point.x() + 0.0, point.y() + 0.0, point.z() + 0.0};
-    const auto [entry, is_new] = known_.emplace(key, soup_.points.size());
-    if (is_new) soup_.points.push_back(point);
-    return entry->second;
-  }
-
- private:
-  PolygonSoup& soup_;
-  std::map<std::array<double, 3>, size_t> known_;
-};
-
 constexpr size_t kStlHeader = 84, kStlTriangle = 50;
 
 size_t AnnouncedTriangles(const std::string& content) {
@@ -76,7 +57,6 @@ bool IsTextStl(const std::string& content) {
 PolygonSoup ReadBinaryStl(const std::filesystem::path& file, const std::string& content) {
   const size_t count = AnnouncedTriangles(content);
   PolygonSoup soup;
-  VertexMerger merger(&soup);
   for (size_t t = 0; t < count; ++t) {
     std::array<float, 12> numbers;  // the normal, then the corners
     std::memcpy(numbers.data(), content.data() + kStlHeader + t * kStlTriangle, sizeof(numbers));
@@ -88,7 +68,8 @@ PolygonSoup ReadBinaryStl(const std::filesystem::path& file, const std::string& 
         throw InputError({file.string()},
                          fmt::format("a corner of triangle {} of {} is not finite", t + 1, count));
       }
-      polygon.push_back(merger.Add(point));
+      polygon.push_back(soup.points.size());
+      soup.points.push_back(point);
     }
     soup.polygons.push_back(std::move(polygon));
   }
@@ -99,7 +80,6 @@ PolygonSoup ReadBinaryStl(const std::filesystem::path& file, const std::string& 
 
 PolygonSoup ReadTextStl(const std::filesystem::path& file) {
   PolygonSoup soup;
-  VertexMerger merger(&soup);
   TextScanner scanner(file);
   std::vector<size_t> polygon;
   bool is_open = false;
@@ -111,7 +91,10 @@ PolygonSoup ReadTextStl(const std::filesystem::path& file) {
         is_open = word == "solid";
         break;
       }
-      if (word == "vertex") polygon.push_back(merger.Add(scanner.Point("a coordinate")));
+      if (word == "vertex") {
+        polygon.push_back(soup.points.size());
+        soup.points.push_back(scanner.Point("a coordinate"));
+      }
       if (word != "endloop") continue;
       if (polygon.size() < 3) {
         scanner.Fail(fmt::format("a facet ends after {} of 3 vertices", polygon.size()));

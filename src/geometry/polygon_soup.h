@@ -24,8 +24,8 @@ struct PolygonSoup {
 PolygonSoup ReadObj(const std::filesystem::path& file);
 
 // STL as text, in upper or lower case, or binary. A file is binary if its length is the one that
-// follows from the number of triangles in bytes 80 to 83, even if it begins with "solid". Vertices
-// that are equal are merged.
+// follows from the number of triangles in bytes 80 to 83, even if it begins with "solid". Each
+// corner is a vertex of its own.
 PolygonSoup ReadStl(const std::filesystem::path& file);
 
 // OFF and its variants with colours (C), normals (N) or texture coordinates (ST), as text, and OFF

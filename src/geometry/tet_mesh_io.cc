@@ -115,6 +115,14 @@ TetSoup ReadTetGen(std::filesystem::path file) {
   return soup;
 }
 
+// Sections of volume elements that are not read, those of higher order such as TetrahedraP2
+// included.
+bool IsOtherVolume(const std::string& keyword) {
+  for (const char* kind : {"Hexahedra", "Prisms", "Pyramids", "TetrahedraP"})
+    if (keyword.starts_with(kind)) return true;
+  return false;
+}
+
 TetSoup ReadMedit(const std::filesystem::path& file) {
   TextScanner scanner(file, '#');
   TetSoup soup;
@@ -147,6 +155,7 @@ TetSoup ReadMedit(const std::filesystem::path& file) {
       }
     } else {
       const long long lines = count();
+      if (IsOtherVolume(keyword)) soup.AddOther("in the section " + keyword, scanner.Line(), lines);
       for (long long line = 0; line < lines; ++line) scanner.ExpectLine("a line of " + keyword);
     }
   }

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/error.h"
+#include "geometry/shape_functions.h"
 
 namespace lacuna {
 namespace {
@@ -61,6 +62,42 @@ Eigen::MatrixXi UniformTets(const TetSoup& soup, const std::filesystem::path& fi
     }
   }
   return tets;
+}
+
+// Refuses a quadratic tetrahedron whose midside nodes lie nearest to the midpoints of each other's
+// edges: the file lists them in the order of another format.
+void RefuseExchangedMidpoints(const TetSoup& soup, const std::filesystem::path& file,
+                              const TetMesh& mesh) {
+  if (mesh.Order() == 1) return;
+  for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
+    std::array<int, kTetEdges.size()> nearest{};
+    for (size_t k = 0; k < nearest.size(); ++k) {
+      const auto distance = [&](int edge) {
+        const auto& [i, j] = kTetEdges[static_cast<size_t>(edge)];
+        const Eigen::Vector3d midpoint =
+            0.5 * (mesh.nodes.col(mesh.tets(i, e)) + mesh.nodes.col(mesh.tets(j, e)));
+        return (mesh.nodes.col(mesh.tets(4 + static_cast<int>(k), e)) - midpoint).squaredNorm();
+      };
+      nearest[k] = static_cast<int>(k);
+      for (int edge = 0; edge < static_cast<int>(nearest.size()); ++edge)
+        if (distance(edge) < distance(nearest[k])) nearest[k] = edge;
+    }
+    std::array<int, kTetEdges.size()> sorted = nearest;
+    std::sort(sorted.begin(), sorted.end());
+    const bool is_permutation = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+    for (size_t k = 0; is_permutation && k < nearest.size(); ++k) {
+      if (nearest[k] == static_cast<int>(k)) continue;
+      const auto name = [](int edge) {
+        const auto& [i, j] = kTetEdges[static_cast<size_t>(edge)];
+        return fmt::format("{} and {}", i + 1, j + 1);
+      };
+      Fail(file, soup.lines[static_cast<size_t>(e)],
+           fmt::format("the midside nodes of tetrahedron {} are not in the order of this format: "
+                       "the one of corners {} lies between corners {}; programs number them "
+                       "differently",
+                       e + 1, name(static_cast<int>(k)), name(nearest[k])));
+    }
+  }
 }
 
 // Reorients the tetrahedra of negative volume and returns their number; refuses flat ones, and
@@ -151,6 +188,14 @@ void DropUnusedNodes(TetMeshFile& result) {
 
 }  // namespace
 
+void TetSoup::AddOther(const std::string& what, int line, long long count) {
+  if (count > 0 && others == 0) {
+    first_other = what;
+    line_of_other = line;
+  }
+  others += count;
+}
+
 void TetSoup::Add(std::span<const int> tet, int line) {
   tets.emplace_back();
   std::copy(tet.begin(), tet.end(), tets.back().begin());
@@ -160,6 +205,13 @@ void TetSoup::Add(std::span<const int> tet, int line) {
 
 TetMeshFile FinishTetMesh(TetSoup soup, const std::filesystem::path& file) {
   TetMeshFile result;
+  if (soup.others > 0)
+    Fail(file, soup.line_of_other,
+         fmt::format(
+             "has {} volume elements that are not read, the first of them {}: mesh the whole "
+             "body with tetrahedra of 4 or 10 nodes, or remove elements that do not belong "
+             "to it",
+             soup.others, soup.first_other));
   if (const size_t repeated = DropRepetitions(soup); repeated > 0)
     result.notes.push_back(
         fmt::format("dropped {} tetrahedra that repeat an earlier one", repeated));
@@ -168,6 +220,7 @@ TetMeshFile FinishTetMesh(TetSoup soup, const std::filesystem::path& file) {
   mesh.nodes.resize(3, soup.nodes.size());
   for (size_t n = 0; n < soup.nodes.size(); ++n) mesh.nodes.col(n) = soup.nodes[n];
 
+  RefuseExchangedMidpoints(soup, file, mesh);
   const Eigen::Index turned = TurnPositive(soup, file, mesh);
   if (turned > 0) {
     result.notes.push_back(fmt::format("reoriented {} of {} tetrahedra that had a negative volume",

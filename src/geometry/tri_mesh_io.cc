@@ -12,6 +12,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/text_file.h"
+#include "geometry/mended_surface.h"
 #include "geometry/mesh_io.h"
 #include "geometry/ply_header.h"
 #include "geometry/polygon_soup.h"
@@ -132,8 +133,18 @@ TriMeshFile ReadTriMesh(const std::filesystem::path& file) {
   const PolygonSoup soup = ReadSoup(file);
   TriMeshFile result;
   result.notes = soup.notes;
-  result.mesh.vertices = FiniteVertices(file, soup);
-  result.mesh.triangles = TrianglesOf(file, soup, result.notes);
+  const Eigen::Matrix3Xd vertices = FiniteVertices(file, soup);
+  const Eigen::Matrix3Xi triangles = TrianglesOf(file, soup, result.notes);
+  MendedSurface mended = MendSurface({vertices, triangles}, LowerExtension(file) == ".stl");
+  if (mended.mesh.triangles.cols() == 0)
+    throw InputError(
+        {file.string()},
+        fmt::format("none of its {} faces has three different corners", soup.polygons.size()));
+  result.mesh = std::move(mended.mesh);
+  result.vertex_in_file = std::move(mended.vertex_in_file);
+  result.vertices_in_file = vertices.cols();
+  result.is_mended = !mended.notes.empty();
+  result.notes.insert(result.notes.end(), mended.notes.begin(), mended.notes.end());
   return result;
 }
 

@@ -155,6 +155,11 @@ void NoteAFineSurface(const TriMesh& surface, const TetOptions& options, MeshRes
                   tets, surface.triangles.cols(), options.max_volume, std::max(1.0, asked)));
 }
 
+// What to do where one component lies within another.
+constexpr const char* kGiveTets =
+    "; a body with a cavity cannot be meshed from its surfaces: give its tetrahedra (`from: "
+    "tet_mesh`)";
+
 void Fail(MeshStatus status, const std::string& message, MeshResult& result) {
   result.status = status;
   result.message = message;
@@ -207,8 +212,13 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
   MeshResult result;
   result.surface_report = CheckSurface(surface);
   if (!result.surface_report.BoundsVolume()) {
+    const SurfaceReport& report = result.surface_report;
+    const bool may_have_cavity =
+        report.components > 1 && report.IsOriented() && !report.inside_out_components.empty();
     Fail(MeshStatus::kFaultySurface,
-         "the surface does not bound a volume: " + DescribeFaults(result.surface_report), result);
+         "the surface does not bound a volume: " + DescribeFaults(report) +
+             (may_have_cavity ? kGiveTets : ""),
+         result);
     return result;
   }
 
@@ -270,8 +280,11 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
   const double missing = result.quality.total_volume - result.surface_report.volume;
   if (std::abs(missing) > kVolumeTolerance * result.surface_report.volume) {
     Fail(MeshStatus::kInternalError,
-         fmt::format("the tetrahedra fill {:.6g} m^3, but the surface encloses {:.6g} m^3",
-                     result.quality.total_volume, result.surface_report.volume),
+         fmt::format("the tetrahedra fill {:.6g} m^3, but the surface encloses {:.6g} m^3{}",
+                     result.quality.total_volume, result.surface_report.volume,
+                     result.surface_report.components > 1
+                         ? ", as where one component lies within another"
+                         : ""),
          result);
     return result;
   }

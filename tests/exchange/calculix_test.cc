@@ -28,13 +28,29 @@ CalculixResult Exported(const Cantilever& bar, InpDialect dialect = InpDialect::
 DisplacementDifference Difference(const Cantilever& bar,
                                   InpDialect dialect = InpDialect::kCalculix) {
   const CalculixResult result = Exported(bar, dialect);
-  if (!result.IsUsable()) return {0, 1, 1};
+  if (!result.IsUsable()) return {.largest = 1, .rms = 1};
   const DisplacementDifference difference =
       CompareDisplacements(bar.Displacements(), result.displacement);
   std::cout << "largest displacement " << difference.largest_displacement
             << " m, largest difference " << difference.largest << ", rms " << difference.rms
             << "\n";
   return difference;
+}
+
+TEST(CompareDisplacements, IsRelativeToTheLargestDisplacement) {
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(6, 2), found = expected;
+  expected(3, 1) = 4e-3;
+  found(3, 1) = 5e-3;
+  const DisplacementDifference moved = CompareDisplacements(expected, found);
+  EXPECT_TRUE(moved.IsDisplaced(0.1));
+  EXPECT_DOUBLE_EQ(moved.largest_displacement, 4e-3);
+  EXPECT_NEAR(moved.largest_difference, 1e-3, 1e-15);
+  EXPECT_NEAR(moved.largest, 0.25, 1e-12);
+  EXPECT_NEAR(moved.rms, 0.125, 1e-12);  // of two nodes at two times, one differs
+  // Rounding errors of a body at rest.
+  const DisplacementDifference rest = CompareDisplacements(1e-14 * expected, found);
+  EXPECT_FALSE(rest.IsDisplaced(0.1));
+  EXPECT_NEAR(rest.largest_difference, 5e-3, 1e-15);
 }
 
 #define SKIP_WITHOUT_CALCULIX() \

@@ -135,6 +135,12 @@ TEST(ImportedExperiment, SaysWhichOfSeveralMaterialsItTakes) {
   EXPECT_THAT(material("three"),
               HasSubstr("young_modulus: 100000 Pa, poisson_ratio: 0.45}   # TO DO: the file has 3 "
                         "materials; that of GEL is taken for the whole body"));
+  // The sections of the file decide before the order of the materials.
+  model.materials.back().element_count = 2;
+  EXPECT_EQ(MaterialOfBody(model), &model.materials[2]);
+  EXPECT_THAT(material("part"), HasSubstr("# TO DO: 2 of 6 elements have STEEL, which is taken"));
+  model.materials.back().element_count = 6;
+  EXPECT_THAT(material("whole"), testing::Not(HasSubstr("TO DO")));
   model.materials = {{"GEL", 1e5, 0.45, 1000.0, true}};
   EXPECT_THAT(material("instantaneous"), HasSubstr("# TO DO: the modulus of the shortest times"));
 }

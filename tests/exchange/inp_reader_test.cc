@@ -116,6 +116,35 @@ TEST(InpReader, RefusesWhatItCannotTrustWithTheLine) {
   EXPECT_THAT(ErrorOf(""), HasSubstr("no tetrahedra"));
 }
 
+// The types that are usual for rubber.
+TEST(InpReader, ReadsVariantsOfTetrahedraWithANote) {
+  const ImportedModel model = Read(Replaced(kTet, "type=c3d4", "type=C3D4H"));
+  EXPECT_EQ(model.mesh.TetCount(), 1);
+  EXPECT_THAT(model.notes, ElementsAre(HasSubstr("type C3D4H are read as C3D4")));
+}
+
+TEST(InpReader, RefusesOtherVolumeElementsAndNamesTheTypesOfTheFile) {
+  const std::string wedges =
+      "*Element, type=C3D6R\n8, 10, 20, 30, 40, 10,\n20\n"
+      "9, 10, 20, 30, 40, 10,\n20\n*Nset, nset=foot";
+  EXPECT_THAT(ErrorOf(Replaced(kTet, "*Nset, nset=foot", wedges)),
+              HasSubstr(":12: has 2 volume elements that are not read, the first of them of type "
+                        "C3D6R"));
+  EXPECT_THAT(ErrorOf(Replaced(kTet, "type=c3d4", "type=s3")),
+              HasSubstr("no tetrahedra (C3D4, C3D10 and their variants); its elements are of type "
+                        "S3"));
+}
+
+TEST(InpReader, CountsTheElementsOfEachMaterial) {
+  const std::string section = "*Solid Section, elset=Soft, material=gel\n1.,\n*Boundary";
+  const ImportedModel model = Read(Replaced(kTet, "*Boundary", section));
+  EXPECT_EQ(model.materials[0].element_count, 1u);
+  EXPECT_EQ(model.not_read.size(), 4u);
+  const ImportedModel without = Read(Replaced(kTet, "*Boundary", Replaced(section, "gel", "foam")));
+  EXPECT_EQ(without.materials[0].element_count, 0u);
+  EXPECT_THAT(without.not_read, testing::Contains(HasSubstr(": *Solid Section, elset=Soft")));
+}
+
 TEST(InpReader, OpensNoOtherFile) {
   TemporaryFolder folder;
   std::ofstream(folder / "nodes.inp") << " 10, 0., 0., 0.\n";

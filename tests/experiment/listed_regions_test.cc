@@ -93,5 +93,22 @@ TEST(ListedRegions, OfAFirstFrameNeedATrackedMesh) {
   EXPECT_EQ(std::get<NodeRegion>(region.shape).file_nodes, box.vertices.cols());
 }
 
+TEST(ListedRegions, AreRefusedWhereVerticesOfTheFileAreLeftOut) {
+  const TemporaryFolder folder;
+  TriMesh box = RoundedBox({0.05, 0, 0}, {0.1, 0.03, 0.03}, 0, 0.01);
+  box.vertices.conservativeResize(3, box.vertices.cols() + 1);
+  box.vertices.rightCols(1).setOnes();
+  WriteTriMesh(folder / "f_00.ply", box);
+  Region region{"clamp", NodeRegion{{0, 1}}};
+  for (const char* reference : {"", "reference: {from: mesh, file: f_00.ply}\n"}) {
+    std::ofstream(folder / "recording.yaml")
+        << "schema_version: 1\nname: bar\nlength_unit: m\n"
+        << reference << "frames: {kind: mesh, files: f_00.ply, rate: 10 Hz, tracked: true}\n";
+    const Recording recording = LoadRecording(folder.Path());
+    EXPECT_THAT([&] { NumberListedNodes(recording, {}, {&region}); },
+                ThrowsMessage<InputError>(HasSubstr("which would shift the numbers")));
+  }
+}
+
 }  // namespace
 }  // namespace lacuna

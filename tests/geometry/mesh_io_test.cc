@@ -413,7 +413,7 @@ TEST(ReadTriMesh, ReadsObjAsItIsWritten) {
         "g a\ns off\nusemtl m\nf 1 2 \\\n3\nf 1 3 4 # the other\n"}) {
     EXPECT_EQ(Counts("a.obj", v + faces), "4 2") << faces;
   }
-  EXPECT_EQ(Counts("a.obj", "\xef\xbb\xbf" + v + "f 1 2 3\n"), "4 1");
+  EXPECT_EQ(Counts("a.obj", "\xef\xbb\xbf" + v + "f 1 2 3\n"), "3 1");
   EXPECT_THAT(Counts("a.obj", v + "f 1 2 x\n"), HasSubstr("a.obj:5: got \"x\"; expected a corner"));
   EXPECT_THAT(Counts("a.obj", v + "f 1 2 9\n"),
               HasSubstr("a.obj:5: there is no vertex 9: they count from 1 to 4"));
@@ -428,6 +428,25 @@ std::string BinaryStl(const std::string& header, uint32_t announced, int written
     bytes.append(2, '\0');
   }
   return bytes;
+}
+
+TEST(ReadTriMesh, MendsTheSurfaceWithNotes) {
+  const TemporaryFolder folder;
+  const std::string corners = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+  // A tetrahedron seen from inside, with one face twice.
+  const TriMeshFile read =
+      ReadTriMesh(Write(folder / "a.obj", corners + "v 0 0 1\nf 2 3 4\nf 2 5 3\nf 2 4 6\n"
+                                                    "f 3 5 4\nf 4 3 2\n"));
+  EXPECT_TRUE(CheckSurface(read.mesh).BoundsVolume());
+  EXPECT_TRUE(read.is_mended);
+  EXPECT_EQ(read.vertex_in_file, Eigen::Vector4i(1, 2, 3, 4));
+  EXPECT_EQ(read.vertices_in_file, 6);
+  EXPECT_THAT(read.notes,
+              ElementsAre(HasSubstr("merged 1 of 6"), HasSubstr("repeat an earlier one"),
+                          HasSubstr("no triangle uses"), HasSubstr("inside out")));
+  EXPECT_FALSE(ReadTriMesh(Write(folder / "a.stl", kStl)).is_mended);
+  EXPECT_THAT(Counts("b.obj", corners + "f 2 2 3\n"),
+              HasSubstr("none of its 1 faces has three different corners"));
 }
 
 TEST(ReadTriMesh, ReadsStlInAnyCaseAndBinaryStlThatBeginsWithSolid) {

@@ -71,6 +71,50 @@ TEST(TetMeshFormats, RefuseHostileCountsAndNumbers) {
               HasSubstr("a.tet:5: tetrahedron 1 has a coordinate beyond 1e+100"));
 }
 
+// Their part of the body would be missing.
+TEST(TetMeshFormats, RefuseVolumesOtherThanTetrahedra) {
+  const TemporaryFolder folder;
+  const std::string nodes =
+      "$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 0 1\n6 0 1 1\n$EndNodes\n";
+  const auto msh = [&](const std::string& type) {
+    return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + nodes + "$Elements\n2\n1 4 0 1 2 3 4\n2 " +
+           type + "\n$EndElements\n";
+  };
+  EXPECT_THAT(Failure(folder / "a.msh", msh("6 0 1 2 3 4 5 6")),
+              HasSubstr("a.msh:16: has 1 volume elements that are not read, the first of them a "
+                        "prism (type 6 of Gmsh)"));
+  EXPECT_EQ(Failure(folder / "a.msh", msh("3 0 1 2 5 4")), "read without complaint");
+  const std::string msh41 =
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n0 0 0\n"
+      "1 0 0\n0 1 0\n0 0 1\n$EndNodes\n$Elements\n2 2 1 2\n3 1 4 1\n1 1 2 3 4\n3 1 7 1\n"
+      "2 1 2 3 4 5\n$EndElements\n";
+  EXPECT_THAT(Failure(folder / "b.msh", msh41), HasSubstr("a pyramid (type 7 of Gmsh)"));
+  const auto medit = [](const std::string& section) {
+    return "Dimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\nTetrahedra 1\n"
+           "1 2 3 4 0\n" +
+           section + "End\n";
+  };
+  EXPECT_THAT(Failure(folder / "a.mesh", medit("Hexahedra 1\n1 2 3 4 1 2 3 4 0\n")),
+              HasSubstr("in the section Hexahedra"));
+  EXPECT_EQ(Failure(folder / "a.mesh", medit("Hexahedra 0\nEdges 1\n1 2 0\n")),
+            "read without complaint");
+}
+
+// Gmsh has the last two midside nodes in the opposite order of VTK and Abaqus.
+TEST(TetMeshFormats, RefuseMidsideNodesInTheOrderOfAnotherFormat) {
+  const TemporaryFolder folder;
+  const auto msh = [](const std::string& last) {
+    return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n10\n1 0 0 0\n2 2 0 0\n3 0 2 0\n"
+           "4 0 0 2\n5 1 0 0\n6 1 1 0\n7 0 1 0.2\n8 0 0 1\n9 0 1 1\n10 1 0 1\n$EndNodes\n"
+           "$Elements\n1\n1 11 0 1 2 3 4 5 6 7 8 " +
+           last + "\n$EndElements\n";
+  };
+  EXPECT_EQ(Failure(folder / "a.msh", msh("9 10")), "read without complaint");
+  EXPECT_THAT(Failure(folder / "a.msh", msh("10 9")),
+              HasSubstr("a.msh:19: the midside nodes of tetrahedron 1 are not in the order of this "
+                        "format: the one of corners 2 and 4 lies between corners 3 and 4"));
+}
+
 // Numbers that hash tables of the standard library put into one bucket must be found all the same.
 // Without the hash this takes minutes.
 TEST(TetMeshFormats, FindNodesWhoseNumbersHaveACommonFactor) {

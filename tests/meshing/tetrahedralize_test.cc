@@ -271,6 +271,7 @@ TEST(MeshTetrahedra, RefusesCavities) {
   shell.triangles << outer.triangles,
       inner.triangles.array() + static_cast<int>(outer.vertices.cols());
   ExpectRefused(shell, "inside out");
+  ExpectRefused(shell, "give its tetrahedra (`from: tet_mesh`)");
 }
 
 // Stars with random spikes: sharp, thin and irregular, but valid surfaces.
