@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/memory_limit.h"
+#include "core/quantity.h"
 #include "experiment/grip_tracks.h"
 #include "experiment/known_loads.h"
 #include "fit/step_force_fitter.h"
@@ -87,9 +88,9 @@ class Follower {
     const RecordedGrip* lost = grips_->Extend(state.time, before, before + shift, MarkersIn(k));
     if (lost != nullptr)
       throw InputError(
-          fmt::format("{}: at {:g} s too few of the markers that \"{}\" follows are seen, or their "
+          fmt::format("{}: at {} too few of the markers that \"{}\" follows are seen, or their "
                       "marker_places are missing",
-                      study_.recording.file.string(), state.time, lost->region.name));
+                      study_.recording.file.string(), TimeText(state.time), lost->region.name));
 
     Eigen::VectorXd start = Stacked(before + shift);
     grips_->Place(state.time, &start);
@@ -131,6 +132,7 @@ class Follower {
     }
     frame.force = AsPoints(fit.force + KnownForces());
     MeasureResidual(k, &frame);
+    WarnOfOtherEquilibrium(k, fit);
     const bool is_stopped = fit.status == ForceFit::Status::kEndedEarly;
     if (is_stopped) {
       motion_.warnings.push_back(
@@ -145,6 +147,21 @@ class Follower {
   }
 
  private:
+  // Warns where the step under the fitted forces leads elsewhere than the fit.
+  void WarnOfOtherEquilibrium(size_t k, const ForceFit& fit) {
+    if (!forces_.HasUnknowns() || motion_.noise <= 0) return;
+    const Eigen::Matrix3Xd apart = AsPoints(history_.position - fit.position);
+    const double rms = std::sqrt(apart.squaredNorm() / static_cast<double>(apart.cols()));
+    constexpr double kFar = 3;
+    if (rms <= kFar * motion_.noise) return;
+    motion_.warnings.push_back(fmt::format(
+        "frame {}: the fitted forces lead the model {:.3g} mm (rms) away from where it was fitted "
+        "to the scan, {:.2g} times the noise: they are not those of this frame, and the next one "
+        "starts from the wrong place. A larger `fit.noise` or fewer forces (`forces.model`) may "
+        "help",
+        study_.frames[k], 1e3 * rms, rms / motion_.noise));
+  }
+
   // Fits the forces of the step that ends in state k, from the node positions `start` at its end.
   // Each round looks for the nearest scanned points where the last one has led. Sets what the frame
   // tells of the fit.
@@ -196,7 +213,9 @@ class Follower {
     motion_.noise = study_.follow.noise;
     if (motion_.noise > 0) return;
     const PointNoise estimate = NamingWhere(study_.name, [this] {
-      return EstimatePointNoise(states_, HasIdentifiedPoints(study_, states_));
+      const bool is_scanned = study_.recording.reference.source == ReferenceSource::kFirstFrame;
+      return EstimatePointNoise(states_, HasIdentifiedPoints(study_, states_),
+                                is_scanned ? states_.front().surface : TriMesh());
     });
     motion_.noise = estimate.deviation;
     if (!estimate.warning.empty()) motion_.warnings.push_back(estimate.warning);

@@ -7,6 +7,7 @@
 
 #include "analysis/track_scatter.h"
 #include "core/error.h"
+#include "geometry/nearest.h"
 
 namespace lacuna {
 namespace {
@@ -53,11 +54,30 @@ PointNoise NoiseOfCloud(const Eigen::Matrix3Xd& points) {
   return {EstimateNoise(points), ""};
 }
 
+// The forces cannot bring a surface closer to later scans than it is to its own.
+void AddErrorOfShape(const TriMesh& shape, const Eigen::Matrix3Xd& points, PointNoise* noise) {
+  const Eigen::VectorXd distance = SurfaceSearch(shape).Nearest(points).distance;
+  const double of_shape = std::sqrt(distance.squaredNorm() / static_cast<double>(distance.size()));
+  constexpr double kMuchLarger = 2;  // beside a root mean square of about 1 from noise alone
+  if (of_shape > kMuchLarger * noise->deviation)
+    noise->warning = fmt::format(
+        "the surface that was reconstructed from the first frame misses its own points by {:.3g} "
+        "mm (rms), while they scatter by {:.3g} mm: the forces are fitted with both as noise, and "
+        "contain what bends the surface back to its points. A mesh of the object (`reference`) or "
+        "a finer surface (a smaller `surface: {{samples_per_node: …}}`, a larger `point_weight`) "
+        "is more accurate",
+        1e3 * of_shape, 1e3 * noise->deviation);
+  noise->deviation = std::hypot(noise->deviation, of_shape);
+}
+
 }  // namespace
 
-PointNoise EstimatePointNoise(const std::vector<FrameState>& states, bool are_identified) {
+PointNoise EstimatePointNoise(const std::vector<FrameState>& states, bool are_identified,
+                              const TriMesh& scanned_shape) {
   const Eigen::Matrix3Xd& points = states.front().cloud.points;
   PointNoise noise = are_identified ? NoiseOfTracks(states) : NoiseOfCloud(points);
+  if (!are_identified && scanned_shape.triangles.cols() > 0)
+    AddErrorOfShape(scanned_shape, points, &noise);
   constexpr double kLeast = 1e-5;
   noise.deviation = std::max(noise.deviation, kLeast * BoundingBoxDiagonal(points));
   return noise;

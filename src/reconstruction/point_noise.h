@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiment/frame_states.h"
+#include "geometry/tri_mesh.h"
 
 namespace lacuna {
 
@@ -21,10 +22,13 @@ struct PointNoise {
 // If the points are identified (FrameState::tracked), σ of one coordinate is estimated from their
 // tracks (analysis/track_scatter.h): their scatter while they rest, or else the white part of their
 // motion, which is an upper bound. Otherwise σ of a scanned point is that of the first state's
-// points about planes through their neighbours (EstimateNoise). Both are at least 1e-5 of the
-// object's size, because noise-free data would require an exact fit, which no mesh allows. Throws
-// InputError, which names fit.noise, where the states are too few or hold too few points.
-PointNoise EstimatePointNoise(const std::vector<FrameState>& states, bool are_identified);
+// points about planes through their neighbours (EstimateNoise), together with their distance (rms)
+// from `scanned_shape`, the reference shape if it was reconstructed from these points (otherwise
+// empty): no forces bring it closer to later scans. All are at least 1e-5 of the object's size,
+// because noise-free data would require an exact fit, which no mesh allows. Throws InputError,
+// which names fit.noise, where the states are too few or hold too few points.
+PointNoise EstimatePointNoise(const std::vector<FrameState>& states, bool are_identified,
+                              const TriMesh& scanned_shape = {});
 
 }  // namespace lacuna
 

@@ -21,9 +21,9 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
-constexpr int kStatesVersion = 4;
-constexpr int kReferenceVersion = 2;
-constexpr int kMotionVersion = 5;
+constexpr int kStatesVersion = 5;
+constexpr int kReferenceVersion = 3;
+constexpr int kMotionVersion = 6;
 constexpr int kResultsVersion = 5;
 
 InputFiles InputsOf(const ReconstructionStudy& study) {

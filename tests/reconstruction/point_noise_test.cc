@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "core/error.h"
@@ -45,6 +46,28 @@ TEST(PointNoise, OfMarkersThatNeverRestIsAnUpperBound) {
   const PointNoise noise = EstimatePointNoise(NoisyMarkers(30, 0.01), true);
   EXPECT_NEAR(noise.deviation, kDeviation, 0.4 * kDeviation);
   EXPECT_THAT(noise.warning, HasSubstr("is an upper bound"));
+}
+
+// A flat square, scanned 1 mm above the surface that was reconstructed from it.
+TEST(PointNoise, ContainsTheErrorOfAReconstructedShape) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0, kDeviation);
+  std::vector<FrameState> states(1);
+  Eigen::Matrix3Xd& points = states[0].cloud.points;
+  points.resize(3, 400);
+  for (int i = 0; i < 400; ++i) points.col(i) << 0.005 * (i % 20), 0.005 * (i / 20), normal(random);
+  TriMesh shape;
+  shape.vertices.resize(3, 4);
+  shape.vertices << -1, 1, 1, -1, -1, -1, 1, 1, -0.001, -0.001, -0.001, -0.001;
+  shape.triangles.resize(3, 2);
+  shape.triangles << 0, 0, 1, 2, 2, 3;
+  const PointNoise alone = EstimatePointNoise(states, false);
+  EXPECT_NEAR(alone.deviation, kDeviation, 0.2 * kDeviation);
+  EXPECT_EQ(alone.warning, "");
+  const PointNoise with = EstimatePointNoise(states, false, shape);
+  const double distance = std::hypot(0.001, kDeviation);
+  EXPECT_NEAR(with.deviation, std::hypot(distance, kDeviation), 0.05 * distance);
+  EXPECT_THAT(with.warning, HasSubstr("misses its own points"));
 }
 
 TEST(PointNoise, IsRefusedWhereThePointsDoNotShowIt) {
