@@ -203,7 +203,7 @@ class Fitter {
       memory_.reach_factor = factor;
       const Calibration round = FitOnce(horizon, values, {.max_iterations = kIterationsWhileFar});
       if (!round.estimates.empty()) values = round.parameters;
-      if (round.is_out_of_budget) break;
+      if (IsOutOfBudget()) break;
     }
     memory_.reach_factor = 1;
     return values;
@@ -216,7 +216,8 @@ class Fitter {
     for (int iterations = 0; iterations < most;) {
       calibration = FitOnce(horizon, values,
                             {.max_iterations = std::min(kIterationsOfRound, most - iterations)});
-      if (calibration.estimates.empty() || calibration.is_out_of_budget) return calibration;
+      if (calibration.estimates.empty() || (calibration.is_out_of_budget && IsOutOfBudget()))
+        return calibration;
       const double moved = LargestChange(problem_.parameters(), calibration, values);
       values = calibration.parameters;
       if (moved < kSettled) {
@@ -228,6 +229,7 @@ class Fitter {
       iterations += std::max(calibration.iterations, 1);
     }
     calibration.usable = false;
+    calibration.is_out_of_budget = false;
     calibration.message =
         "the correspondences between scanned points and the surface did not settle: start nearer "
         "to the solution, fit fewer parameters at once, or give scan.reach a smaller value";

@@ -2,9 +2,10 @@
 //
 // All fits use the fitted frames of the fitted recordings. The correspondences of scanned points
 // are fixed during a fit and updated after it, until the parameters settle. If they do not settle,
-// the result is not usable. A fit that has used up its budget is not usable either; its parameters
-// are the best ones that it met. Where a fit from several starts has used it up, the result is the
-// fit from the study's own start. All functions throw Interrupted.
+// the result is not usable. A fit that has used up its budget or its iterations is not usable
+// either (Calibration::is_out_of_budget); its parameters are the best ones that it met. Where no
+// fit from several starts has converged, the result is the one from the study's own start. All
+// functions throw Interrupted.
 #ifndef LACUNA_CALIBRATION_CALIBRATION_FITS_H_
 #define LACUNA_CALIBRATION_CALIBRATION_FITS_H_
 

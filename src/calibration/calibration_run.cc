@@ -23,8 +23,8 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage, or its files.
-constexpr int kMeshVersion = 2;
-constexpr int kCalibrationVersion = 30;
+constexpr int kMeshVersion = 3;
+constexpr int kCalibrationVersion = 31;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
@@ -70,8 +70,8 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
       std::filesystem::absolute(study.file)
           .lexically_normal()
           .lexically_proximate(std::filesystem::absolute(study.output).lexically_normal());
-  // Parameters that were not quite reached are worth a comparison and a diagnosis: a fit that does
-  // not converge usually lacks physics.
+  // Parameters that were not quite reached are worth a comparison and a diagnosis: a fit that takes
+  // too many predictions or iterations usually lacks physics.
   record.usable = calibration.usable || calibration.is_out_of_budget;
   record.message = calibration.message;
   if (!fit.note.empty()) record.notes.push_back(fit.note);

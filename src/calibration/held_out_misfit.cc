@@ -86,8 +86,10 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
   // A held-out recording determines the offsets of its places only from the frames before its
   // motion, and only where no fitted recording determines them.
   std::vector<char> tells_places;
+  std::vector<double> times;
   for (const int frame : recording.misfit.frames) {
     const double time = item.recording.times[frame];
+    times.push_back(time);
     recording.fitted.push_back(item.fitted && time <= item.fit_until);
     tells_places.push_back(item.fitted ? recording.fitted.back() : time <= item.StartTime());
   }
@@ -97,8 +99,9 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
                                                 recording.misfit.points, errors, tells_places,
                                                 recording.misfit.deformation);
   for (size_t k = 0; k < recording.misfit.reactions.size(); ++k)
-    recording.reactions.push_back(MeasureReaction(
-        model.Reactions()[k], recording.misfit.reactions[k], recording.fitted, tells_places));
+    recording.reactions.push_back(MeasureReaction(model.Reactions()[k],
+                                                  recording.misfit.reactions[k], times,
+                                                  recording.fitted, tells_places));
   recording.in_fit = Measure(recording, true, errors.noise);
   recording.held_out = Measure(recording, false, errors.noise);
   return recording;

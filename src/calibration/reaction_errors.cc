@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/reading_mistakes.h"
+
 namespace lacuna {
 namespace {
 
@@ -33,8 +35,9 @@ ReactionMeasure MeasureOver(const Eigen::VectorXd& residual, const ReactionMisfi
 }  // namespace
 
 FittedReaction MeasureReaction(const MeasuredReaction& reading, const ReactionMisfit& misfit,
-                               const std::vector<char>& fitted,
+                               const std::vector<double>& times, const std::vector<char>& fitted,
                                const std::vector<char>& tells_tare) {
+  constexpr double kLarge = 0.03;
   FittedReaction reaction;
   reaction.name = reading.name;
   reaction.labels = reading.labels;
@@ -50,6 +53,8 @@ FittedReaction MeasureReaction(const MeasuredReaction& reading, const ReactionMi
       misfit.residual - tare.replicate(static_cast<Eigen::Index>(fitted.size()), 1);
   reaction.in_fit = MeasureOver(residual, misfit, fitted, true, reading.deviation);
   reaction.held_out = MeasureOver(residual, misfit, fitted, false, reading.deviation);
+  if (std::max(reaction.in_fit.rms, reaction.held_out.rms) > kLarge * reaction.largest_reading)
+    reaction.likely_mistakes = FindReadingMistakes(reading, misfit, times);
   return reaction;
 }
 

@@ -194,7 +194,6 @@ class BoundedDescent {
     // The first prediction was made before the search; secants need one more at its end.
     const int needed = end_.predictions + 1 + (is_exact_ ? 0 : 1);
     if (needed >= options_.max_predictions) {
-      end_.is_out_of_budget = true;
       end_.message = "the search was ended after " + std::to_string(needed) +
                      " predictions, before it had converged";
     } else if (end_.iterations >= options_.max_iterations) {
@@ -203,6 +202,7 @@ class BoundedDescent {
     } else {
       return false;
     }
+    end_.is_out_of_budget = true;
     return true;
   }
 

@@ -27,14 +27,15 @@
 namespace lacuna {
 
 struct DescentEnd {
-  Eigen::VectorXd parameters;     // θ, SI, within the bounds; the best that was found
-  Prediction prediction;          // at these parameters, with its Jacobian
-  bool usable = false;            // whether the search has converged
-  std::string message;            // why it has not
-  double cost = 0;                // ½ ‖r‖² and the priors there
-  int iterations = 0;             // steps that were tried
-  int predictions = 0;            // evaluations of the prediction function
-  bool is_out_of_budget = false;  // CalibrationOptions::max_predictions has ended it
+  Eigen::VectorXd parameters;  // θ, SI, within the bounds; the best that was found
+  Prediction prediction;       // at these parameters, with its Jacobian
+  bool usable = false;         // whether the search has converged
+  std::string message;         // why it has not
+  double cost = 0;             // ½ ‖r‖² and the priors there
+  int iterations = 0;          // steps that were tried
+  int predictions = 0;         // evaluations of the prediction function
+  // CalibrationOptions::max_predictions or max_iterations has ended it.
+  bool is_out_of_budget = false;
 };
 
 // Searches from the starts of the parameters, of which there must be at least one. `first` is the

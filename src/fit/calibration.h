@@ -26,8 +26,9 @@ inline constexpr double kNormalQuantile = 1.959963984540054;
 // Vectors and lists are in the order of the parameters given.
 struct Calibration {
   bool usable = false;
-  std::string message;                       // why the result is not usable
-  bool is_out_of_budget = false;             // CalibrationOptions::max_predictions ended the search
+  std::string message;  // why the result is not usable
+  // CalibrationOptions::max_predictions or max_iterations ended the search.
+  bool is_out_of_budget = false;
   int iterations = 0;                        // steps of the optimiser that were tried
   int predictions = 0;                       // evaluations of the prediction function
   Eigen::VectorXd parameters;                // θ, SI

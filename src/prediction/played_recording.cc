@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/quantity.h"
 #include "prediction/reaction_misfit.h"
 #include "prediction/reading_times.h"
 #include "scan/random_bits.h"
@@ -57,9 +58,9 @@ Eigen::VectorXd PlayedNuisances(const RecordingModel& model) {
   const PredictedRecording& item = model.item();
   if (item.hold && !item.hold->force)
     throw InputError(
-        fmt::format("{}: the object is held until {:g} s by a force that is not known; to play the "
+        fmt::format("{}: the object is held until {} by a force that is not known; to play the "
                     "recording, give `force` in its `hold`",
-                    item.name, item.hold->release));
+                    item.name, TimeText(item.hold->release)));
   Eigen::VectorXd values(static_cast<Eigen::Index>(model.nuisances().size()));
   for (Eigen::Index k = 0; k < values.size(); ++k)
     values[k] = model.nuisances()[static_cast<size_t>(k)].prior.start;

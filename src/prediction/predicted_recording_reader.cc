@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "analysis/residual_statistics.h"
+#include "core/quantity.h"
 #include "experiment/model_reader.h"
 #include "experiment/tracked_points.h"
 
@@ -38,13 +39,13 @@ void RequireReleaseWithinFrames(const Config& config, const PredictedRecording& 
   const double first = item.recording.times[item.frames.front()];
   const double last = item.recording.times[item.frames.back()];
   if (item.hold->release > last)
-    config.Fail("release", fmt::format("lies after the last frame that is used, at {:g} s: the "
+    config.Fail("release", fmt::format("lies after the last frame that is used, at {}: the "
                                        "object is never released",
-                                       last));
+                                       TimeText(last)));
   if (item.hold->release < first)
-    config.Fail("release", fmt::format("lies before the first frame that is used, at {:g} s: no "
+    config.Fail("release", fmt::format("lies before the first frame that is used, at {}: no "
                                        "frame shows the object while it is held",
-                                       first));
+                                       TimeText(first)));
 }
 
 // The largest displacement, m, of a marker that is seen in both frames.
@@ -189,9 +190,8 @@ PredictedRecording ReadRecordingEntry(const Config& config, const EffectList& of
   // One equilibrium can be fitted; a motion needs two steps.
   const size_t fewest = scheme == TimeScheme::kQuasiStatic ? 1 : 3;
   if (item.frames.size() < fewest) {
-    config.Fail("recording",
-                fmt::format("{} frames lie between {:g} s and {:g} s; at least {} are needed",
-                            item.frames.size(), from, to, fewest));
+    config.Fail("recording", fmt::format("{} frames lie between {} and {}; at least {} are needed",
+                                         item.frames.size(), TimeText(from), TimeText(to), fewest));
   }
   if (hold) RequireReleaseWithinFrames(*hold, item);
   if (item.fitted && item.fit_until < item.recording.times[item.frames[fewest - 1]])

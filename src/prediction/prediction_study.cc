@@ -19,11 +19,14 @@ namespace {
 bool MayFollowMaterial(const ParameterCard& card) { return std::isnan(card.default_value); }
 
 // Sets the bounds to those of the card. The parameter must stay strictly inside an open bound: the
-// margin is a part of the distance of its start, however small that is.
+// margin is a part of the distance of its start, however small that is. A Poisson's ratio keeps a
+// larger one: near 0.5 a prediction takes many times longer, and the motion hardly changes any
+// more.
 void SetBoundsOfCard(const Bounds& card, CalibratedParameter* prior) {
-  constexpr double kMargin = 1e-6;
-  SetBounds(card.open_min ? card.min + kMargin * (prior->start - card.min) : card.min,
-            card.open_max ? card.max - kMargin * (card.max - prior->start) : card.max, card, prior);
+  constexpr double kMargin = 0.02, kMarginOfLogScale = 1e-6;
+  const double margin = prior->log_scale ? kMarginOfLogScale : kMargin;
+  SetBounds(card.open_min ? card.min + margin * (prior->start - card.min) : card.min,
+            card.open_max ? card.max - margin * (card.max - prior->start) : card.max, card, prior);
 }
 
 // An added mass weighs with the gravity of the model (effects/gravity.h), also where that is

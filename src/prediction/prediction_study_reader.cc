@@ -18,7 +18,8 @@ namespace lacuna {
 namespace {
 
 // Throws InputError where nothing holds the object: under any load it would have no equilibrium to
-// start from. `config` is the entry of the recording.
+// start from. Contacts pass, because several planes may hold it together. `config` is the entry of
+// the recording.
 void RequireHeldObject(const Config& config, const EffectList& of_study,
                        const PredictedRecording& item) {
   const RecordedObject& object = item.recording.object;
@@ -32,7 +33,7 @@ void RequireHeldObject(const Config& config, const EffectList& of_study,
   config.Fail(
       "recording",
       fmt::format("nothing holds the object{}: {} has neither `fixed` nor `gripped`, and no "
-                  "effect of the model is a support or a contact",
+                  "effect of the model is a support (a plane on which it lies does not suffice)",
                   item.hold ? " after its release" : "", item.recording.file.string()));
 }
 

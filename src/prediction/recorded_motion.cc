@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/quantity.h"
 #include "experiment/model_reader.h"
+#include "prediction/place_doubts.h"
 #include "prediction/recording_noise.h"
 
 namespace lacuna {
@@ -67,7 +69,9 @@ bool IsAtRest(const PredictionStudy& study) {
 }
 
 std::string RestWarning(const PredictionStudy& study) {
-  if (!IsAtRest(study)) return "";
+  // Quasi-static frames show none of these in any case, and their jumps, as from load to load, look
+  // like noise.
+  if (study.scheme == TimeScheme::kQuasiStatic || !IsAtRest(study)) return "";
   const bool is_one_frame = std::all_of(
       study.recordings.begin(), study.recordings.end(),
       [](const PredictedRecording& item) { return !item.fitted || FramesUntil(item).size() == 1; });
@@ -118,9 +122,9 @@ std::string FitUntilWarning(const PredictedRecording& item) {
   const double last = item.recording.times[item.frames.back()];
   if (!item.fitted || !std::isfinite(item.fit_until) || item.fit_until < last) return "";
   return fmt::format(
-      "{}: `fit_until: {:g} s` does not lie before the last frame that is used, at {:g} s: all "
+      "{}: `fit_until: {}` does not lie before the last frame that is used, at {}: all "
       "frames are fitted, and none is held out",
-      item.name, item.fit_until, last);
+      item.name, TimeText(item.fit_until), TimeText(last));
 }
 
 std::string ScanSettingsWarning(const PredictionStudy& study) {
@@ -142,6 +146,8 @@ std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
   for (const PredictedRecording& item : study.recordings) {
     for (const std::string& warning : item.recording.warnings) add(item.name + ": " + warning);
     add(UnseenWarning(item));
+    add(DoubtOfPlaces(study, item));
+    add(DoubtOfIncrements(item));
     add(FitUntilWarning(item));
     add(SlownessWarning(item, study));
     add(GravityWarning(item, study));

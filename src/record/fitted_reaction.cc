@@ -25,6 +25,23 @@ ReactionMeasure MeasureFromJson(const json& value, bool is_torque) {
           value.at(Key("largest", is_torque)), value.at("rms_over_sigma")};
 }
 
+// Empty where there are none.
+json MistakesToJson(const ReadingMistakes& mistakes, bool is_torque) {
+  json value = json::object();
+  if (mistakes.factor) value["factor"] = *mistakes.factor;
+  if (mistakes.offset) value[Key("offset", is_torque)] = *mistakes.offset;
+  if (mistakes.delay) value["delay_s"] = *mistakes.delay;
+  return value;
+}
+
+ReadingMistakes MistakesFromJson(const json& value, bool is_torque) {
+  const auto entry = [&](const std::string& key) -> std::optional<double> {
+    if (!value.contains(key)) return std::nullopt;
+    return value.at(key).get<double>();
+  };
+  return {entry("factor"), entry(Key("offset", is_torque)), entry("delay_s")};
+}
+
 }  // namespace
 
 json ReactionToJson(const FittedReaction& reaction) {
@@ -39,7 +56,8 @@ json ReactionToJson(const FittedReaction& reaction) {
           {Key("tare", is_torque), reaction.tare},
           {Key("largest_reading", is_torque), reaction.largest_reading},
           {"in_fit", MeasureToJson(reaction.in_fit, is_torque)},
-          {"held_out", MeasureToJson(reaction.held_out, is_torque)}};
+          {"held_out", MeasureToJson(reaction.held_out, is_torque)},
+          {"likely_mistakes", MistakesToJson(reaction.likely_mistakes, is_torque)}};
 }
 
 FittedReaction ReactionFromJson(const json& value) {
@@ -57,6 +75,8 @@ FittedReaction ReactionFromJson(const json& value) {
   reaction.largest_reading = value.at(Key("largest_reading", is_torque));
   reaction.in_fit = MeasureFromJson(value.at("in_fit"), is_torque);
   reaction.held_out = MeasureFromJson(value.at("held_out"), is_torque);
+  if (value.contains("likely_mistakes"))  // absent in older records
+    reaction.likely_mistakes = MistakesFromJson(value.at("likely_mistakes"), is_torque);
   return reaction;
 }
 

@@ -8,6 +8,7 @@
 #define LACUNA_RECORD_FITTED_REACTION_H_
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,14 @@ struct ReactionMeasure {
   double rms_over_sigma = 0;  // 1 is noise alone
 };
 
+// Mistakes in a reading, each of which alone would explain nearly all of its misfit, up to a factor
+// on the prediction that stands for other moduli.
+struct ReadingMistakes {
+  std::optional<double> factor;  // the reading is this multiple of the force; negative: the sign
+  std::optional<double> offset;  // N, the largest of its components
+  std::optional<double> delay;   // s, by which the reading comes late
+};
+
 struct FittedReaction {
   std::string name;  // of the grip
   bool is_torque = false;
@@ -33,6 +42,7 @@ struct FittedReaction {
   std::vector<double> tare;    // N, for each component
   double largest_reading = 0;  // N
   ReactionMeasure in_fit, held_out;
+  ReadingMistakes likely_mistakes = {};  // looked for only where the misfit is large
 
   const char* Unit() const { return is_torque ? "N m" : "N"; }
   const char* Quantity() const { return is_torque ? "torque" : "force"; }

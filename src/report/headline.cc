@@ -8,10 +8,13 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <variant>
 
+#include "core/quantity.h"
 #include "record/effect_card.h"
 #include "record/ledger.h"
 #include "report/agreement_text.h"
+#include "report/calibration_report.h"
 #include "report/quantity_text.h"
 #include "report/verdict_text.h"
 
@@ -78,6 +81,102 @@ std::string FirstErrorSentence(const ReportedModel& model) {
                      misses ? "misses" : "meets", Observed(model.calibration),
                      misses ? "by" : "to within", Lengths(model.errors) + ",",
                      model.errors.has_held_out ? "not " : "", WhereAndWhen(model));
+}
+
+// The measured force or torque that is missed by the largest multiple of its noise.
+struct WorstReaction {
+  const FittedReaction* reaction = nullptr;
+  const FittedRecording* recording = nullptr;
+  const ReactionMeasure* error = nullptr;
+};
+WorstReaction FindWorstReaction(const CalibrationRecord& record) {
+  WorstReaction worst;
+  for (const FittedRecording& recording : record.recordings)
+    for (const FittedReaction& reaction : recording.reactions)
+      for (const ReactionMeasure* error : {&reaction.in_fit, &reaction.held_out})
+        if (error->values > 0 &&
+            (worst.error == nullptr || error->rms_over_sigma > worst.error->rms_over_sigma))
+          worst = {&reaction, &recording, error};
+  return worst;
+}
+
+// What a mistake in a reading may be, as the second half of a sentence.
+std::string DescribeMistakes(const FittedReaction& reaction) {
+  const ReadingMistakes& mistakes = reaction.likely_mistakes;
+  std::vector<std::string> likely;
+  if (mistakes.factor && *mistakes.factor < 0)
+    likely.emplace_back("with the opposite sign (`exerted_by`)");
+  if (mistakes.factor && *mistakes.factor > 0)
+    likely.push_back(fmt::format("if it were {:.3g} times the {}, as in another unit",
+                                 *mistakes.factor, reaction.Quantity()));
+  if (mistakes.offset)
+    likely.push_back(fmt::format("with an offset of {:.3g} {} (`tare_deviation`)", *mistakes.offset,
+                                 reaction.Unit()));
+  if (mistakes.delay)
+    likely.push_back(fmt::format("if it came {} {} (`delay_deviation`)",
+                                 DurationText(std::abs(*mistakes.delay)),
+                                 *mistakes.delay > 0 ? "late" : "early"));
+  if (!likely.empty()) return fmt::format("its reading would fit {}.", fmt::join(likely, ", or "));
+  return fmt::format(
+      "another sign (`exerted_by`), {}a delay (`delay_deviation`) or another unit of its reading "
+      "would look like this.",
+      reaction.tare_deviation == 0 ? "an offset (`tare_deviation`), " : "");
+}
+
+// Where a measured force is missed by far more than the markers or scans are. Empty where none is.
+std::string MissedReactionSentence(const ReportedModel& model) {
+  // An error of the noise that is this many times that of the markers is worth a sentence, and one
+  // of this share of the largest reading is more than errors of the elements cause.
+  constexpr double kFarMore = 3, kConsiderable = 0.03;
+  const auto [reaction, recording, error] = FindWorstReaction(model.calibration);
+  if (error == nullptr ||
+      error->rms_over_sigma < kFarMore * std::max(1.0, model.errors.rms_over_sigma))
+    return "";
+  std::string text = fmt::format(
+      "{} it misses the {} on {}{} by {:.3g} {}, {:.1f} times its noise.",
+      model.errors.rms_over_sigma < kBeyondNoise ? "But" : "And", reaction->Quantity(),
+      reaction->name,
+      model.calibration.recordings.size() > 1 ? fmt::format(" ({})", recording->name) : "",
+      error->rms, reaction->Unit(), error->rms_over_sigma);
+  if (error->rms < kConsiderable * reaction->largest_reading) return text;
+  return text + " Before an effect is looked for, the load cell should be checked: " +
+         DescribeMistakes(*reaction);
+}
+
+// The number of standard deviations of its prior by which an estimate is off; 0 where a conflict
+// has no such number.
+struct DeviationsFromPrior {
+  double operator()(const NuisanceParameterConflict& conflict) const { return conflict.deviations; }
+  double operator()(const MarkerConflict& conflict) const {
+    return conflict.offset.norm() / conflict.deviation;
+  }
+  double operator()(const ReferenceShapeConflict& conflict) const {
+    return conflict.rms / conflict.deviation;
+  }
+  double operator()(const PatchConflict& conflict) const {
+    return conflict.largest / conflict.deviation;
+  }
+  double operator()(const MarkerConflictCount&) const { return 0; }
+  double operator()(const UnmatchedScans&) const { return 0; }
+};
+
+// The worst conflict with what the files say, where it is so large that the files are probably
+// wrong. Empty where there is none.
+std::string PriorConflictSentence(const CalibrationRecord& record) {
+  constexpr double kProbablyWrong = 10;  // standard deviations
+  const PriorConflict* worst = nullptr;
+  double most = kProbablyWrong;
+  for (const PriorConflict& conflict : record.prior_conflicts) {
+    const double deviations = std::visit(DeviationsFromPrior{}, conflict);
+    if (!(deviations > most)) continue;
+    most = deviations;
+    worst = &conflict;
+  }
+  if (worst == nullptr) return "";
+  return fmt::format(
+      "The fit contradicts what the files say by {:.0f} standard deviations, which should be "
+      "checked first: {}.",
+      most, DescribePriorConflict(*worst));
 }
 
 std::string NextStep(const DiagnosisRecord& diagnosis) {
@@ -278,11 +377,13 @@ bool Names(const DiagnosisRecord& diagnosis, const std::string& effect) {
          diagnosis.effects == std::vector<std::string>{effect};
 }
 
-// The verdict on the model and, where nothing more is missing in the fitted recordings, which
-// others it does not meet.
+// What else is wrong with the fit, the verdict on the model and, where nothing more is missing in
+// the fitted recordings, which others it does not meet.
 void AddVerdict(const ReportedModel& model, std::vector<std::string>* sentences) {
   if (!model.calibration.usable) return;
-  for (std::string sentence : {VerdictSentence(model), NotMetElsewhere(model)})
+  for (std::string sentence :
+       {MissedReactionSentence(model), PriorConflictSentence(model.calibration),
+        VerdictSentence(model), NotMetElsewhere(model)})
     if (!sentence.empty()) sentences->push_back(std::move(sentence));
 }
 

@@ -14,7 +14,8 @@ namespace lacuna {
 // For each of the models, at least one (CHECK): its error on the frames to which nothing was fitted
 // (if nothing was held out, on the fitted ones), and the verdict of its diagnosis with what to do
 // next. Where the first model was compared, the first sentence says where and when the error is
-// largest.
+// largest. The verdict of the last model comes after a measured force that it misses by far more
+// than the markers, and a conflict with a prior of more than ten standard deviations.
 std::vector<std::string> Headline(const std::vector<ReportedModel>& models);
 
 // How closely a reconstruction follows its recording.

@@ -379,6 +379,17 @@ TEST(Calibration, EndsWithTheBestParametersOfItsBudget) {
   EXPECT_FALSE(Calibrate(AmplitudeAndTime(), decay, {.max_predictions = 500}).is_out_of_budget);
 }
 
+TEST(Calibration, EndsWithTheBestParametersOfItsIterations) {
+  const Decay decay(2, 0.7, 1);
+  const Calibration part = Calibrate(AmplitudeAndTime(), decay, {.max_iterations = 1});
+  EXPECT_FALSE(part.usable);
+  EXPECT_TRUE(part.is_out_of_budget);
+  EXPECT_EQ(part.iterations, 1);
+  EXPECT_LT(part.rms, part.start_rms);
+  EXPECT_EQ(part.estimates.size(), 2u);
+  EXPECT_THAT(part.message, testing::HasSubstr("after 1 iterations"));
+}
+
 // A search that cannot come down to a rival's cost need not go on to its own end.
 TEST(Calibration, EndsWhereItIsHopeless) {
   // Steps towards a double root halve the way to it. The floor is a cost of 100.

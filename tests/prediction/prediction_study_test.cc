@@ -208,8 +208,10 @@ TEST_F(ReadingAPredictionStudy, RefusesMarkersWhoseGripFollowsAScan) {
 TEST_F(ReadingAPredictionStudy, RefusesAnObjectThatNothingHolds) {
   const std::string clamp =
       "fixed: [{name: clamp, half_space: {point: [0.002 m, 0 m, 0 m], normal: [-1, 0, 0]}}]\n";
-  EXPECT_THAT(MessageAfterInRecording({{clamp, ""}}),
-              HasSubstr("recordings[0].recording: nothing holds the object after its release"));
+  EXPECT_THAT(
+      MessageAfterInRecording({{clamp, ""}}),
+      AllOf(HasSubstr("recordings[0].recording: nothing holds the object after its release"),
+            HasSubstr("a plane on which it lies does not suffice")));
   const std::string damping = "  - {type: mass_damping, alpha: 1 1/s}\n";
   EXPECT_EQ(
       MessageAfterInRecording(
@@ -356,7 +358,7 @@ TEST_F(ReadingAPredictionStudy, StartsFromAnyValueThatTheCardAllows) {
               ContainsRegex("material.young_modulus: got \"0 Pa\""));
 }
 
-// A fit stays away from a bound at which the model degenerates, not from one that the user sets.
+// A fit stays away from a bound at which the model degenerates, not from one well before it.
 TEST_F(ReadingAPredictionStudy, ClosesABoundThatLiesInsideAnOpenOne) {
   const auto ratio = [&](const std::string& bounds) {
     return ReadBarStudy(folder_.Path(),
@@ -364,16 +366,18 @@ TEST_F(ReadingAPredictionStudy, ClosesABoundThatLiesInsideAnOpenOne) {
         .fitted[0]
         .prior;
   };
-  const CalibratedParameter as_on_card = ratio("");
-  EXPECT_TRUE(as_on_card.open_min && as_on_card.open_max);
-  EXPECT_LT(as_on_card.max, 0.5);
   const CalibratedParameter limited = ratio(", max: 0.45");
   EXPECT_EQ(limited.max, 0.45);
-  EXPECT_TRUE(limited.open_min);
   EXPECT_FALSE(limited.open_max);
   EXPECT_FALSE(ratio(", min: 0").open_min);
-  EXPECT_TRUE(ratio(fmt::format(", max: {}", as_on_card.max)).open_max)
-      << "as `lacuna add` writes it";
+  EXPECT_EQ(ratio(", max: 0.49999").max, 0.49999);
+  EXPECT_TRUE(ratio(", max: 0.49999").open_max);
+
+  // Near 0.5 predictions take long, so that the ratio ends well before unless the user says so.
+  const CalibratedParameter as_on_card = ratio("");
+  EXPECT_FALSE(as_on_card.open_max);
+  EXPECT_GT(as_on_card.max, 0.49);
+  EXPECT_LT(as_on_card.max, 0.4995);
 }
 
 TEST_F(ReadingAPredictionStudy, TakesAnUncertainDensityWhereItsWeightIsKnown) {

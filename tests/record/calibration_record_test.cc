@@ -42,7 +42,8 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
                                             {0.05, -0.03},
                                             3,
                                             {4, 8, 0.03, 0.06, 1.5},
-                                            {}});
+                                            {},
+                                            {-2, 0.4, 0.1}});
   record.prior_conflicts = {NuisanceParameterConflict{"a.delay", 4},
                             MarkerConflict{"a", "tip", Eigen::Vector3d(1, 2, 3), 1e-4},
                             MarkerConflictCount{"a", 7, 8},
@@ -75,6 +76,7 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   EXPECT_EQ(read.parameters[0].shares->forces, 0.75);
   EXPECT_EQ(read.recordings[0].marker_names, (std::vector<std::string>{"root", "tip"}));
   ASSERT_EQ(read.recordings[0].reactions.size(), 1u);
+  EXPECT_EQ(read.recordings[0].reactions[0].likely_mistakes.delay, 0.1);
   EXPECT_EQ(ReactionToJson(read.recordings[0].reactions[0]),
             ReactionToJson(record.recordings[0].reactions[0]));
   ASSERT_EQ(read.prior_conflicts.size(), record.prior_conflicts.size());

@@ -263,6 +263,55 @@ TEST(Headline, AnEffectThatExplainsAPartIsNotCalledWhatIsMissing) {
               HasSubstr("With the clock of swing beside it, 1.7 times the noise is left"));
 }
 
+TEST(Headline, SaysThatAMeasuredForceIsMissedByFarMoreThanTheMarkers) {
+  ReportedModel model = Model(3.1e-5, 0.9);
+  FittedReaction force;
+  force.name = "jaw";
+  force.largest_reading = 2;
+  force.in_fit = {19, 19, 0.01, 0.02, 2.5};
+  model.calibration.recordings[0].reactions = {force};
+  EXPECT_THAT(Headline({model}), SizeIs(1));
+
+  FittedReaction& reaction = model.calibration.recordings[0].reactions[0];
+  reaction.in_fit = {19, 19, 0.01, 0.02, 12};
+  EXPECT_EQ(Headline({model}).at(1),
+            "But it misses the force on jaw by 0.01 N, 12.0 times its noise.");
+  reaction.in_fit = {19, 19, 0.9, 2, 505};
+  EXPECT_EQ(
+      Headline({model}).at(1),
+      "But it misses the force on jaw by 0.9 N, 505.0 times its noise. Before an effect is looked "
+      "for, the load cell should be checked: another sign (`exerted_by`), an offset "
+      "(`tare_deviation`), a delay (`delay_deviation`) or another unit of its reading would look "
+      "like this.");
+  reaction.tare_deviation = 0.1;
+  EXPECT_THAT(Headline({model}).at(1), testing::Not(HasSubstr("tare")));
+  reaction.likely_mistakes.factor = -3e4;
+  EXPECT_THAT(Headline({model}).at(1),
+              EndsWith("checked: its reading would fit with the opposite sign (`exerted_by`)."));
+  reaction.likely_mistakes = {{}, 0.4, -0.2};
+  EXPECT_THAT(Headline({model}).at(1),
+              EndsWith("would fit with an offset of 0.4 N (`tare_deviation`), or if it came 200 ms "
+                       "early (`delay_deviation`)."));
+  // Markers that are missed as well.
+  model.errors.rms_over_sigma = 200;
+  EXPECT_THAT(Headline({model}), SizeIs(2));
+  EXPECT_THAT(Headline({model}).at(1), testing::Not(HasSubstr("jaw")));
+}
+
+TEST(Headline, NamesAConflictOfMoreThanTenStandardDeviations) {
+  ReportedModel model = Model(3.1e-5, 0.9);
+  model.calibration.prior_conflicts = {
+      MarkerConflict{"swing", "root", Eigen::Vector3d(9.9e-4, 0, 0), 1e-4},
+      NuisanceParameterConflict{"swing.clock", 4}};
+  EXPECT_THAT(Headline({model}), SizeIs(1));
+  model.calibration.prior_conflicts.emplace_back(
+      MarkerConflict{"swing", "tip", Eigen::Vector3d(0, 3e-2, 0), 1e-4});
+  EXPECT_EQ(Headline({model}).at(1),
+            "The fit contradicts what the files say by 300 standard deviations, which should be "
+            "checked first: swing: the fit places marker tip (0, 30, 0) mm away from its recorded "
+            "place on the undeformed object; place_deviation is 0.1 mm.");
+}
+
 TEST(Headline, AFitThatFailedIsNotCalledAModel) {
   ReportedModel failed = Model(0, 0);
   failed.calibration.usable = false;
