@@ -35,7 +35,13 @@ void RefuseMissing(const Counterparts& counterparts, const ExportFormat& format)
                   format.name, list));
 }
 
-void PrintDifference(const char* what, const DisplacementDifference& difference) {
+// `size`: m, of the body.
+void PrintDifference(const char* what, const DisplacementDifference& difference, double size) {
+  if (!difference.IsDisplaced(size)) {
+    fmt::print("  {:<12} nothing is displaced in Lacuna; largest difference {:.2g} mm\n", what,
+               1e3 * difference.largest_difference);
+    return;
+  }
   fmt::print("  {:<12} largest {:.3g} %, rms {:.3g} % of the largest displacement, {:.4g} mm\n",
              what, 100 * difference.largest, 100 * difference.rms,
              1e3 * difference.largest_displacement);
@@ -56,13 +62,18 @@ int Verify(const DescribedRun& run, const std::filesystem::path& output) {
   }
   const Eigen::MatrixXd expected =
       PredictPositions(run).colwise() - Eigen::VectorXd(model.mesh.nodes.reshaped());
+  const Eigen::Matrix3Xd& nodes = model.mesh.nodes;
+  const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
   fmt::print("Displacements of all {} nodes, CalculiX against Lacuna:\n", model.mesh.NodeCount());
   PrintDifference("equilibrium",
-                  CompareDisplacements(expected.leftCols(1), result.displacement.leftCols(1)));
+                  CompareDisplacements(expected.leftCols(1), result.displacement.leftCols(1)),
+                  size);
   const Eigen::Index frames = expected.cols() - 1;
   if (frames > 0)
-    PrintDifference("motion", CompareDisplacements(expected.rightCols(frames),
-                                                   result.displacement.rightCols(frames)));
+    PrintDifference(
+        "motion",
+        CompareDisplacements(expected.rightCols(frames), result.displacement.rightCols(frames)),
+        size);
   return 0;
 }
 

@@ -19,7 +19,7 @@ ProgressOptions OutputOptions::ForProgress() const {
   return options;
 }
 
-void AddOutputOptions(CLI::App* command, OutputOptions* output) {
+void AddPrintOptions(CLI::App* command, OutputOptions* output) {
   CLI::Option* verbose = command->add_flag("-v,--verbose", output->verbose,
                                            "Print the whole result, and log the stages in detail");
   CLI::Option* json = command->add_flag("--json", output->json,
@@ -28,6 +28,10 @@ void AddOutputOptions(CLI::App* command, OutputOptions* output) {
       ->excludes(verbose)
       ->excludes(json);
   json->excludes(verbose);
+}
+
+void AddOutputOptions(CLI::App* command, OutputOptions* output) {
+  AddPrintOptions(command, output);
   command->add_flag_callback(
       "--no-report", [output] { output->report = false; }, "Do not write the report's page");
 }

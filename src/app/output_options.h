@@ -25,7 +25,10 @@ struct OutputOptions {
   ProgressOptions ForProgress() const;
 };
 
-// Adds --verbose, --quiet, --json and --no-report.
+// Adds --verbose, --quiet and --json.
+void AddPrintOptions(CLI::App* command, OutputOptions* output);
+
+// Adds these and --no-report, to a command that writes a report's page.
 void AddOutputOptions(CLI::App* command, OutputOptions* output);
 
 // Prints warnings on standard error, unless nothing but errors is to be printed.

@@ -51,7 +51,7 @@ void AddPlan(CLI::App* app, OutputOptions* output, std::function<int()>* command
   plan->add_option("--protocols", arguments->protocols,
                    "YAML file with variants of your own (docs/plan.md)")
       ->check(CLI::ExistingFile);
-  AddOutputOptions(plan, output);
+  AddPrintOptions(plan, output);
   plan->callback([=] { *command = [=] { return RunPlanCommand(*arguments, *output); }; });
 }
 

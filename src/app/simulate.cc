@@ -195,7 +195,10 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
     recording.comment =
         fmt::format("{}\nPlayed from {}.", kSimulated, study.file.filename().string());
     WriteMarkerRecording(written, recording);
-    fmt::print("The recording was written to {}\n", written.string());
+    fmt::print("The recording was written to {}{}\n", written.string(),
+               study.noise > 0 ? ""
+                               : "; its markers have no errors, because the experiment gives no "
+                                 "`noise` above 0");
   }
   return 0;
 }

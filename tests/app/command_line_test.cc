@@ -340,6 +340,7 @@ TEST(CommandLine, WhatIsWrittenStaysInItsFolder) {
                                (folder / "a/played").string();
   const Ending played = Lacuna(simulate);
   EXPECT_EQ(played.status, 0) << played.said;
+  EXPECT_THAT(played.said, HasSubstr("its markers have no errors")) << "noise is not given";
   EXPECT_TRUE(std::filesystem::exists(folder / "a/out/_./body.pvd"));
   EXPECT_TRUE(std::filesystem::exists(folder / "a/played/_._.._ESC/recording.yaml"));
   EXPECT_FALSE(std::filesystem::exists(folder / "a/body.pvd"));

@@ -204,6 +204,13 @@ TEST(Lacuna, SaysThatAnOptionOfTheProgramStandsBeforeTheCommand) {
               HasSubstr("lacuna --memory-limit=4GB fit ..."));
 }
 
+// The page of a run shows a plan after `lacuna report`.
+TEST(Lacuna, OnlyACommandThatWritesAReportCanOmitIt) {
+  EXPECT_THAT(Lacuna("fit --help").said, HasSubstr("--no-report"));
+  EXPECT_THAT(Lacuna("plan --help").said,
+              AllOf(HasSubstr("--json"), Not(HasSubstr("--no-report"))));
+}
+
 TEST(Lacuna, TheNumbersOfFiguresMayStandBeforeTheirFolder) {
   const TemporaryFolder folder;
   const Ending ending = Lacuna("figures -o " + (folder / "f").string() + " --only 1 /nowhere");
