@@ -127,6 +127,18 @@ const LedgerModel& Ledger::Best() const {
   return models[best];
 }
 
+std::vector<std::string> Ledger::MayBeLeftOut() const {
+  const LedgerModel& best = Best();
+  std::vector<std::string> effects;
+  for (int at = best.parent; at > 0; at = models[static_cast<size_t>(at)].parent) {
+    const LedgerModel& model = models[static_cast<size_t>(at)];
+    const LedgerModel& before = models[static_cast<size_t>(model.parent)];
+    if (before.diagnosis && SizeMayBeZero(best.record, *before.diagnosis, model.added))
+      effects.insert(effects.begin(), model.added);
+  }
+  return effects;
+}
+
 bool LowersError(const LedgerModel& model, double share) {
   // A smaller change of the held-out error is none. Larger: an effect counts that raises it more.
   constexpr double kNoChange = 0.02;
@@ -235,6 +247,7 @@ void WriteLedgerFile(const Ledger& ledger, const std::filesystem::path& folder) 
                     {"finished", ledger.HasEnded()},
                     {"ending", ending},
                     {"best", ledger.Best().name},
+                    {"may_be_left_out", ledger.MayBeLeftOut()},
                     {"models", models}};
   WriteFileAtomically(folder / "ledger.json", all.dump(2) + "\n");
 }

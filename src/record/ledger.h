@@ -68,6 +68,9 @@ struct Ledger {
   // The model that the effects which count lead to: each of them is fitted, lowers the error
   // (LowersError) and has a size that cannot be zero. At least one model is needed (CHECK).
   const LedgerModel& Best() const;
+  // The effects that lead to Best() and whose size may be zero in its fit: later ones explain what
+  // these seemed to explain when they were added.
+  std::vector<std::string> MayBeLeftOut() const;
 };
 
 // Whether the 95 % intervals of all parameters that make the size of the effect `added`, which

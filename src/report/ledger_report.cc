@@ -192,6 +192,10 @@ std::string LedgerSummary(const Ledger& ledger) {
   };
   row(first.errors.has_held_out ? "held-out error before" : "error before", Total(first));
   row("what was added", AddedUpTo(ledger, best));
+  if (const std::vector<std::string> effects = ledger.MayBeLeftOut(); !effects.empty())
+    row("what may be left out",
+        fmt::format("{}, whose size may be zero beside what was added later",
+                    fmt::join(effects, ", ")));
   row(first.errors.has_held_out ? "held-out error after" : "error after", Total(best));
   return text;
 }

@@ -36,6 +36,33 @@ TEST(LedgerReport, SaysWhyAModelIsNotUsable) {
             "The search ended because swelling cannot be fitted: no convergence.");
 }
 
+// Once swelling is added, too, nothing is left for the drag.
+TEST(LedgerReport, SaysWhichAddedEffectMayBeLeftOut) {
+  Ledger ledger = SmallLedger();
+  ledger.models.front().diagnosis->ranking.front().sizes = {{"coefficient", "Pa"}};
+  const CalibrationRecord& with_drag = ledger.models.back().record;
+  CalibrationRecord with_both = with_drag;
+  for (FittedRecording& recording : with_both.recordings)
+    for (MisfitMeasure* measure : {&recording.in_fit, &recording.held_out}) {
+      measure->rms *= 0.5;
+      measure->rms_over_sigma *= 0.5;
+    }
+  for (const double low : {-0.1, 0.1}) {
+    with_both.parameters.back().estimate.low = low;
+    with_both.parameters.back().estimate.high = 0.3;
+    Ledger extended = ledger;
+    extended.models.push_back(
+        MakeLedgerModel(extended, "/runs/bar+drag+swelling", with_both, 1, "swelling"));
+    const std::string text = LedgerSummary(extended);
+    EXPECT_THAT(text, HasSubstr("what was added          drag, swelling\n"));
+    const auto told = HasSubstr("what may be left out    drag, whose size may be zero");
+    if (low < 0)
+      EXPECT_THAT(text, told);
+    else
+      EXPECT_THAT(text, Not(told));
+  }
+}
+
 TEST(LedgerReport, SaysWhyTheSearchEnded) {
   Ledger ledger = SmallLedger();
   EXPECT_EQ(DescribeEnding(ledger),
