@@ -422,6 +422,12 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
     }
     break;
   }
+  for (size_t k = 1; k + 1 < models.size(); ++k)
+    if (const auto& diagnosis = models[k - 1].diagnosis;
+        diagnosis && SizeMayBeZero(models.back().calibration, *diagnosis, models[k].added))
+      sentences.push_back(
+          fmt::format("Beside what was added later, {} may be zero: it may be left out.",
+                      ShortTitle(*diagnosis, models[k].added)));
   const auto last = std::find_if(models.rbegin(), models.rend(), [](const ReportedModel& model) {
     return model.diagnosis.has_value();
   });

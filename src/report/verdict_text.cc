@@ -217,7 +217,8 @@ std::string ShortTitle(const DiagnosisRecord& diagnosis, const std::string& name
   std::string title = TitleOf(diagnosis, name);
   if (const size_t at = title.find(" ("); at != std::string::npos) title.erase(at);
   const bool is_abbreviation = title.substr(0, title.find(' ')).ends_with('.');
-  if (title.size() > 1 && !is_abbreviation && std::islower(static_cast<unsigned char>(title[1])))
+  const bool is_word = title.size() > 1 && std::islower(static_cast<unsigned char>(title[1]));
+  if (!is_abbreviation && (is_word || title.starts_with("A ")))
     title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
   return title;
 }

@@ -6,10 +6,12 @@
 namespace lacuna {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 ReportedModel Model(double rms, double over_sigma) {
@@ -84,6 +86,32 @@ TEST(Headline, TellsTheErrorWhatIsMissingAndWhatAddingItDid) {
           "No further effect is needed (probability that no effect is missing: 78 %): the error "
           "that "
           "is left is that of the noise, or no larger than the error of any model."));
+}
+
+// The diagnosis with drag names swelling, beside which the drag may be zero.
+TEST(Headline, SaysWhichAddedEffectMayBeLeftOut) {
+  ReportedModel first = Model(4e-4, 2.4);
+  first.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+  RecordedEffect drag;
+  drag.type = "drag";
+  drag.title = "Drag";
+  drag.sizes = {{"coefficient", "kg/m^3"}};
+  first.diagnosis->ranking = {drag};
+  ReportedModel second = Model(2e-4, 1.2);
+  second.added = "drag";
+  second.diagnosis = Diagnosis(Verdict::kMissing, {"swelling"});
+  ReportedModel third = Model(1e-4, 0.6);
+  third.added = "swelling";
+  for (ReportedModel* model : {&second, &third}) {
+    model->calibration.parameters.resize(1);
+    model->calibration.parameters[0].name = "drag.coefficient";
+    model->calibration.parameters[0].estimate.low = 2;
+    model->calibration.parameters[0].estimate.high = 3;
+  }
+  const std::string told = "Beside what was added later, drag may be zero: it may be left out.";
+  EXPECT_THAT(Headline({first, second, third}), Not(Contains(told)));
+  third.calibration.parameters[0].estimate.low = -1;
+  EXPECT_THAT(Headline({first, second, third}), Contains(told));
 }
 
 TEST(Headline, SaysThatAnEffectWhoseSizeMayBeZeroDoesNotCount) {
