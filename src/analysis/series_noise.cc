@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "core/median.h"
 
 namespace lacuna {
 namespace {
@@ -134,8 +137,7 @@ SeriesStatistics Statistics(const Eigen::VectorXd& residual, const SeriesLayout&
   std::vector<double> spacings;
   for (size_t f = 1; f < layout.times.size(); ++f)
     spacings.push_back(layout.times[f] - layout.times[f - 1]);
-  std::nth_element(spacings.begin(), spacings.begin() + spacings.size() / 2, spacings.end());
-  statistics.spacing = spacings[spacings.size() / 2];
+  statistics.spacing = Median(std::move(spacings));
 
   std::vector<double> product(kLags + 1, 0.0);
   double pairs_at_zero = 0;

@@ -37,7 +37,6 @@ ReactionMeasure MeasureOver(const Eigen::VectorXd& residual, const ReactionMisfi
 FittedReaction MeasureReaction(const MeasuredReaction& reading, const ReactionMisfit& misfit,
                                const std::vector<double>& times, const std::vector<char>& fitted,
                                const std::vector<char>& tells_tare) {
-  constexpr double kLarge = 0.03;
   FittedReaction reaction;
   reaction.name = reading.name;
   reaction.labels = reading.labels;
@@ -53,7 +52,8 @@ FittedReaction MeasureReaction(const MeasuredReaction& reading, const ReactionMi
       misfit.residual - tare.replicate(static_cast<Eigen::Index>(fitted.size()), 1);
   reaction.in_fit = MeasureOver(residual, misfit, fitted, true, reading.deviation);
   reaction.held_out = MeasureOver(residual, misfit, fitted, false, reading.deviation);
-  if (std::max(reaction.in_fit.rms, reaction.held_out.rms) > kLarge * reaction.largest_reading)
+  if (std::max(reaction.in_fit.rms, reaction.held_out.rms) >
+      kConsiderableReactionError * reaction.largest_reading)
     reaction.likely_mistakes = FindReadingMistakes(reading, misfit, times);
   return reaction;
 }

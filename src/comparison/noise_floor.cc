@@ -1,10 +1,11 @@
 #include "comparison/noise_floor.h"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "analysis/residual_statistics.h"
+#include "core/median.h"
 
 namespace lacuna {
 namespace {
@@ -31,11 +32,7 @@ NoiseFloor MeasureNoiseFloor(const RecordedResiduals& residuals, double sigma) {
                             rest.drift, rest.noise_drift});
     if (!std::isnan(rest.deviation)) deviations.push_back(rest.deviation);
   }
-  if (!deviations.empty()) {
-    const auto median = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-    std::nth_element(deviations.begin(), median, deviations.end());
-    result.rest_deviation = *median;
-  }
+  if (!deviations.empty()) result.rest_deviation = Median(std::move(deviations));
   result.floor = std::fmax(result.white, result.rest_deviation);
   return result;
 }

@@ -15,6 +15,8 @@
 #include <string>
 #include <utility>
 
+#include "core/letter_case.h"
+
 namespace lacuna {
 namespace {
 
@@ -78,12 +80,6 @@ Unit LookUp(std::string_view symbol) {
     }
   }
   throw std::invalid_argument(fmt::format("unknown unit \"{}\"", symbol));
-}
-
-bool DiffersInCaseOnly(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-    return std::tolower(x) == std::tolower(y);
-  });
 }
 
 // Reads a product of units such as "kg/m^3" or "Pa s" factor by factor.
@@ -270,10 +266,10 @@ MeasuredQuantity ParseAnyQuantity(std::string_view text) {
 
 std::vector<std::string> UnitsInAnyCase(std::string_view symbol, const Dimension& dimension) {
   std::vector<std::string> found;
+  const std::string wanted = InLowerCase(symbol);
   const auto add = [&](const Unit& unit, std::string_view prefix) {
     const std::string whole = std::string(prefix) + std::string(unit.symbol);
-    if (unit.dimension.SameAs(dimension) && DiffersInCaseOnly(whole, symbol))
-      found.push_back(whole);
+    if (unit.dimension.SameAs(dimension) && InLowerCase(whole) == wanted) found.push_back(whole);
   };
   for (const Unit& unit : kUnprefixed) add(unit, "");
   for (const Unit& unit : kPrefixable) {

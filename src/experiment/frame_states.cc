@@ -7,10 +7,12 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/json_file.h"
+#include "core/median.h"
 #include "core/npy.h"
 #include "experiment/grip_tracks.h"
 #include "geometry/nearest.h"
@@ -180,9 +182,7 @@ double EstimateNoise(const Eigen::Matrix3Xd& points) {
     deviation[static_cast<size_t>(j)] =
         std::sqrt(std::max(0.0, axes.eigenvalues()[0]) / (kNeighbours - 3));
   }
-  const auto middle = deviation.begin() + static_cast<std::ptrdiff_t>(deviation.size() / 2);
-  std::nth_element(deviation.begin(), middle, deviation.end());
-  return *middle;
+  return Median(std::move(deviation));
 }
 
 }  // namespace lacuna

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/error.h"
+#include "core/median.h"
 #include "experiment/frame_states.h"
 #include "geometry/nearest.h"
 #include "scan/random_bits.h"
@@ -79,8 +81,7 @@ double EstimateScanNoise(const ScanFrames& scans, const std::vector<int>& frames
   const size_t count = std::min(kMost, frames.size());
   for (size_t k = 0; k < count; ++k)
     noises.push_back(scans.At(frames[k * frames.size() / count]).noise);
-  std::nth_element(noises.begin(), noises.begin() + noises.size() / 2, noises.end());
-  return noises[noises.size() / 2];
+  return Median(std::move(noises));
 }
 
 }  // namespace lacuna

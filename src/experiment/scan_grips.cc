@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/median.h"
 #include "geometry/nearest.h"
 #include "geometry/rotation.h"
 
@@ -123,8 +124,7 @@ Fit FitOnce(const Part& part, const SurfaceSearch& search, const ScannedPoints& 
   fit.shown = eigen.eigenvalues()[0];
   if (fit.shown < kLeastShown) return fit;
   fit.step = information.ldlt().solve(right);
-  std::nth_element(distances.begin(), distances.begin() + fit.points / 2, distances.end());
-  fit.median = distances[fit.points / 2];
+  fit.median = Median(std::move(distances));
   return fit;
 }
 

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "core/error.h"
+#include "core/median.h"
 #include "experiment/frame_states.h"
 #include "geometry/farthest_first.h"
 
@@ -54,8 +55,7 @@ std::vector<Eigen::VectorXd> WeightsOf(const std::vector<Eigen::VectorXd>& sigma
     for (const double value : frame)
       if (value > 0) all.push_back(value);
   if (all.empty()) return {};
-  std::nth_element(all.begin(), all.begin() + all.size() / 2, all.end());
-  const double typical = all[all.size() / 2];
+  const double typical = Median(std::move(all));
   std::vector<Eigen::VectorXd> weights;
   for (const Eigen::VectorXd& frame : sigma) {
     weights.emplace_back(Eigen::VectorXd::Ones(frame.size()));

@@ -78,16 +78,11 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
   }
 
   bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
-    CHECK_EQ(at.state.size(), StateSize(at.body));
     const double modulus = Modulus();
     const Law law(parameters_, at.time_step);
-    WithNodesPerElement(at.body, [&](auto nodes) {
-      ForEachElement(*at.body.schedule, [&](int element) {
-        ForEachPoint<decltype(nodes)::value>(at, element, [&](int q, const Eigen::Matrix3d& F) {
-          stress->middleCols<3>(3 * q) +=
-              modulus * F * FromKelvin(law.Stress(GreenLagrangeStrain(F), StateOf(at.state, q)));
-        });
-      });
+    ForEachPoint(at, [&](int q, const Eigen::Matrix3d& F) {
+      stress->middleCols<3>(3 * q) +=
+          modulus * F * FromKelvin(law.Stress(GreenLagrangeStrain(F), StateOf(at.state, q)));
     });
     return true;
   }
@@ -256,42 +251,49 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     return Modulus() * sum;
   }
 
-  template <int kNodes>
-  void AddStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& changes,
-                           Eigen::Ref<Eigen::MatrixXd> forces) const {
-    CHECK_EQ(at.state.size(), StateSize(at.body));
+  // Calls visit(element, F, strain) for each element, with the deformation gradients and the
+  // strains at its points.
+  template <int kNodes, typename Visit>
+  static void ForEachStrainedElement(const Kinematics& at, const Visit& visit) {
+    CHECK_EQ(at.state.size(), Eigen::Index{Law::kStateSize} * at.body.PointCount());
     constexpr int kPoints = QuadraturePoints<kNodes>();
-    const Law law(parameters_, at.time_step);
     ForEachElement(*at.body.schedule, [&](int element) {
-      Eigen::Matrix3d F[kPoints], weighted[kPoints];
+      Eigen::Matrix3d F[kPoints];
       KelvinVector strain[kPoints];
       FieldGradients<kNodes>(at.body, element, at.position, F);
       for (int p = 0; p < kPoints; ++p) strain[p] = GreenLagrangeStrain(F[p]);
+      visit(element, F, strain);
+    });
+  }
+
+  template <int kNodes>
+  void AddStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& changes,
+                           Eigen::Ref<Eigen::MatrixXd> forces) const {
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    const Law law(parameters_, at.time_step);
+    const auto add = [&](int element, const Eigen::Matrix3d* F, const KelvinVector* strain) {
+      Eigen::Matrix3d weighted[kPoints];
       for (Eigen::Index k = 0; k < changes.cols(); ++k) {
         const auto change = changes.col(k);
-        auto force = forces.col(k);
         for (int p = 0; p < kPoints; ++p) {
           const int q = element * kPoints + p;
           weighted[p] =
               Modulus() * at.body.weight[q] * F[p] *
               FromKelvin(law.StressByState(strain[p], StateOf(at.state, q), StateOf(change, q)));
         }
-        AddPointForces<kNodes>(at.body, element, weighted, force.data());
+        AddPointForces<kNodes>(at.body, element, weighted, forces.col(k).data());
       }
-    });
+    };
+    ForEachStrainedElement<kNodes>(at, add);
   }
 
   template <int kNodes>
   void AdvanceStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& moved,
                                Eigen::Ref<Eigen::MatrixXd> changes) const {
-    CHECK_EQ(at.state.size(), StateSize(at.body));
     constexpr int kPoints = QuadraturePoints<kNodes>();
     const Law law(parameters_, at.time_step);
-    ForEachElement(*at.body.schedule, [&](int element) {
-      Eigen::Matrix3d F[kPoints], by[kPoints];
-      KelvinVector strain[kPoints];
-      FieldGradients<kNodes>(at.body, element, at.position, F);
-      for (int p = 0; p < kPoints; ++p) strain[p] = GreenLagrangeStrain(F[p]);
+    const auto advance = [&](int element, const Eigen::Matrix3d* F, const KelvinVector* strain) {
+      Eigen::Matrix3d by[kPoints];
       for (Eigen::Index k = 0; k < changes.cols(); ++k) {
         auto change = changes.col(k);
         FieldGradients<kNodes>(at.body, element, moved.col(k).data(), by);
@@ -301,7 +303,8 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
                                            StrainChange(F[p], by[p]), State(StateOf(change, q)));
         }
       }
-    });
+    };
+    ForEachStrainedElement<kNodes>(at, advance);
   }
 
   Eigen::VectorXd parameters_;  // in the order of the card

@@ -44,17 +44,18 @@ struct TetMeshFile {
 };
 
 // Reads the following formats:
-//   .msh          Gmsh 2.2 and 4.1, text; tetrahedra of order 1 or 2, points, lines and faces are
-//   skipped .node, .ele   TetGen, order 1; either file is named and both are read .mesh MEDIT,
-//   text, order 1 .tet          lines "v x y z" and "t i j k l", indices from 0 .txt          the
-//   numbers of nodes and tetrahedra, the nodes, the tetrahedra (indices from 0)
+//   .msh          Gmsh 2.2 and 4.1, text; tetrahedra of order 1 or 2, and nothing flat
+//   .node, .ele   TetGen, order 1; either file is named and both are read
+//   .mesh         MEDIT, text, order 1
+//   .tet          lines "v x y z" and "t i j k l", indices from 0
+//   .txt          the numbers of nodes and tetrahedra, the nodes, the tetrahedra (indices from 0)
 // Tetrahedra with negative volume are reoriented, repetitions of a tetrahedron with the same list
 // of nodes (Gmsh 2.2 writes one for each physical group) and unused nodes are dropped, each with a
-// note.
-// Volume elements that are no tetrahedra are refused, because a part of the body would be missing.
-// Tetrahedra that have no volume or a repeated node, have their midside nodes on each other's edges
-// (as in the order of another format), overlap across a face, or share one face among
-// three are refused, and so are lines behind those that a count announces.
+// note. Points, lines and faces are skipped; volume elements that are no tetrahedra are refused,
+// because a part of the body would be missing. Tetrahedra that have no volume or a repeated node,
+// have their midside nodes on each other's edges (as in the order of another format), overlap
+// across a face, or share one face among three are refused, and so are lines behind those that a
+// count announces.
 TetMeshFile ReadTetMesh(const std::filesystem::path& file);
 // The files that it reads for this name: two of TetGen, one of any other format.
 std::vector<std::filesystem::path> FilesOfTetMesh(const std::filesystem::path& file);

@@ -15,18 +15,12 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 #include "core/text_file.h"
 #include "geometry/text_scanner.h"
 
 namespace lacuna {
 namespace {
-
-std::string LowerCase(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return lower;
-}
 
 // The vertex of a corner such as 7, 7/2, 7//3 or -1/2/3, as it stands there.
 long long CornerNumber(std::string_view corner, const TextScanner& scanner) {
@@ -50,7 +44,7 @@ size_t AnnouncedTriangles(const std::string& content) {
 
 bool IsTextStl(const std::string& content) {
   const size_t begin = content.find_first_not_of(" \t\r\n\xef\xbb\xbf");
-  if (begin == std::string::npos || LowerCase(content.substr(begin, 5)) != "solid") return false;
+  if (begin == std::string::npos || InLowerCase(content.substr(begin, 5)) != "solid") return false;
   return content.find('\0') == std::string::npos;
 }
 
@@ -85,7 +79,7 @@ PolygonSoup ReadTextStl(const std::filesystem::path& file) {
   bool is_open = false;
   while (scanner.NextLine()) {
     while (!scanner.AtLineEnd()) {
-      const std::string word = LowerCase(scanner.Word("a keyword"));
+      const std::string word = InLowerCase(scanner.Word("a keyword"));
       // The rest of these lines is a name.
       if (word == "solid" || word == "endsolid") {
         is_open = word == "solid";
@@ -127,7 +121,7 @@ long long OffCount(std::string_view word, const char* what, const TextScanner& s
 OffHeader ReadOffHeader(TextScanner& scanner) {
   scanner.ExpectLine("OFF");
   std::string_view word = scanner.Word("OFF");
-  const std::string lower = LowerCase(word);
+  const std::string lower = InLowerCase(word);
   if (const size_t at = lower.find("off"); at != std::string::npos) {
     const std::string_view variant = word.substr(0, at);
     if (variant == "n" || variant.find_first_not_of("STCNstcn") != std::string_view::npos) {

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 #include "core/text_file.h"
 
 namespace lacuna {
@@ -26,10 +27,7 @@ bool Parse(std::string_view word, T& value) {
 }  // namespace
 
 std::string LowerExtension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
+  return InLowerCase(file.extension().string());
 }
 
 TextScanner::TextScanner(const std::filesystem::path& file, char comment)

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/median.h"
 #include "core/memory_limit.h"
 #include "core/quantity.h"
 #include "experiment/grip_tracks.h"
@@ -276,16 +277,15 @@ class Follower {
 std::string FarFromScan(const TriMesh& surface, const Eigen::Matrix3Xd& points) {
   if (points.cols() == 0) return "";
   const double size = BoundingBoxDiagonal(surface.vertices);
-  Eigen::VectorXd distances = SurfaceSearch(surface).Nearest(points).distance;
-  const auto middle = distances.begin() + distances.size() / 2;
-  std::nth_element(distances.begin(), middle, distances.end());
-  if (*middle <= kFarFromScan * size) return "";
+  const Eigen::VectorXd distances = SurfaceSearch(surface).Nearest(points).distance;
+  const double middle = Median({distances.begin(), distances.end()});
+  if (middle <= kFarFromScan * size) return "";
   return fmt::format(
       "half of the scanned points are farther than {:.3g} mm from the model, which is {:.3g} mm "
       "across; likely causes are a wrong length_unit, a reference shape in another coordinate "
       "system, poses or intrinsics that do not belong to the images, and other objects in the scan "
       "(`crop` and `keep_largest` leave them out)",
-      1e3 * *middle, 1e3 * size);
+      1e3 * middle, 1e3 * size);
 }
 
 FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBody& reference,

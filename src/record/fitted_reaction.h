@@ -23,6 +23,11 @@ struct ReactionMeasure {
   double rms_over_sigma = 0;  // 1 is noise alone
 };
 
+// Errors of a measured force that exceed this share of its largest reading are more than those of
+// the elements cause, so that mistakes in the reading are looked for. Smaller: coarse elements look
+// like a mistake.
+inline constexpr double kConsiderableReactionError = 0.03;
+
 // Mistakes in a reading, each of which alone would explain nearly all of its misfit, up to a factor
 // on the prediction that stands for other moduli.
 struct ReadingMistakes {
@@ -42,7 +47,7 @@ struct FittedReaction {
   std::vector<double> tare;    // N, for each component
   double largest_reading = 0;  // N
   ReactionMeasure in_fit, held_out;
-  ReadingMistakes likely_mistakes = {};  // looked for only where the misfit is large
+  ReadingMistakes likely_mistakes = {};  // looked for beyond kConsiderableReactionError only
 
   const char* Unit() const { return is_torque ? "N m" : "N"; }
   const char* Quantity() const { return is_torque ? "torque" : "force"; }

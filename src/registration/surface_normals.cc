@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
+#include "core/median.h"
 #include "core/parallel.h"
 
 namespace lacuna {
@@ -39,10 +41,7 @@ double SurfaceSpacing(const BlockTree& cloud) {
     const double s = BlockSpacing(cloud.Queries(block), CountIn(cloud, block));
     if (s > 0.0) spacing.push_back(s);
   }
-  if (spacing.empty()) return 0.0;
-  auto middle = spacing.begin() + spacing.size() / 2;
-  std::nth_element(spacing.begin(), middle, spacing.end());
-  return *middle;
+  return spacing.empty() ? 0.0 : Median(std::move(spacing));
 }
 
 Eigen::Matrix3Xd EstimateNormals(const BlockTree& cloud, const GaussianKernels& kernels) {

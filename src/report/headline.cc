@@ -125,9 +125,8 @@ std::string DescribeMistakes(const FittedReaction& reaction) {
 
 // Where a measured force is missed by far more than the markers or scans are. Empty where none is.
 std::string MissedReactionSentence(const ReportedModel& model) {
-  // An error of the noise that is this many times that of the markers is worth a sentence, and one
-  // of this share of the largest reading is more than errors of the elements cause.
-  constexpr double kFarMore = 3, kConsiderable = 0.03;
+  // An error over the noise that is this many times that of the markers is worth a sentence.
+  constexpr double kFarMore = 3;
   const auto [reaction, recording, error] = FindWorstReaction(model.calibration);
   if (error == nullptr ||
       error->rms_over_sigma < kFarMore * std::max(1.0, model.errors.rms_over_sigma))
@@ -138,7 +137,7 @@ std::string MissedReactionSentence(const ReportedModel& model) {
       reaction->name,
       model.calibration.recordings.size() > 1 ? fmt::format(" ({})", recording->name) : "",
       error->rms, reaction->Unit(), error->rms_over_sigma);
-  if (error->rms < kConsiderable * reaction->largest_reading) return text;
+  if (error->rms < kConsiderableReactionError * reaction->largest_reading) return text;
   return text + " Before an effect is looked for, the load cell should be checked: " +
          DescribeMistakes(*reaction);
 }
@@ -348,6 +347,16 @@ std::string NotMetElsewhere(const ReportedModel& model) {
       fmt::join(missed, ", "));
 }
 
+// Which of the added effects may be zero in the last model.
+void AddDispensable(const std::vector<ReportedModel>& models, std::vector<std::string>* sentences) {
+  for (size_t k = 1; k + 1 < models.size(); ++k)
+    if (const auto& diagnosis = models[k - 1].diagnosis;
+        diagnosis && SizeMayBeZero(models.back().calibration, *diagnosis, models[k].added))
+      sentences->push_back(
+          fmt::format("Beside what was added later, {} may be zero: it may be left out.",
+                      ShortTitle(*diagnosis, models[k].added)));
+}
+
 std::string AfterAdding(const ReportedModel& model, const ReportedModel& before) {
   const std::string title =
       before.diagnosis ? ShortTitle(*before.diagnosis, model.added) : model.added;
@@ -399,6 +408,7 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
     if (k > 0) sentences.push_back(AfterAdding(models[k], models[k - 1]));
     if (k + 1 == models.size()) {
       AddVerdict(models[k], &sentences);
+      AddDispensable(models, &sentences);
       break;
     }
     // Without a diagnosis, what was added shows by itself that the model before lacked it.
@@ -422,12 +432,6 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
     }
     break;
   }
-  for (size_t k = 1; k + 1 < models.size(); ++k)
-    if (const auto& diagnosis = models[k - 1].diagnosis;
-        diagnosis && SizeMayBeZero(models.back().calibration, *diagnosis, models[k].added))
-      sentences.push_back(
-          fmt::format("Beside what was added later, {} may be zero: it may be left out.",
-                      ShortTitle(*diagnosis, models[k].added)));
   const auto last = std::find_if(models.rbegin(), models.rend(), [](const ReportedModel& model) {
     return model.diagnosis.has_value();
   });

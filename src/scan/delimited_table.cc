@@ -9,11 +9,10 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <stdexcept>
 
 #include "core/error.h"
-#include "core/quantity.h"
 #include "core/text_file.h"
+#include "scan/column_name.h"
 #include "scan/table_numbers.h"
 
 namespace lacuna {
@@ -140,15 +139,6 @@ std::string_view WithoutBrackets(std::string_view text) {
   return has_brackets ? Trim(text.substr(1, text.size() - 2)) : text;
 }
 
-bool IsUnit(std::string_view text) {
-  try {
-    ParseAnyQuantity("1 " + std::string(text));
-  } catch (const std::invalid_argument&) {
-    return false;
-  }
-  return !text.empty();
-}
-
 // The names of columns that two lines give: in groups, and in them. Empty where the first line
 // groups no columns, i.e. has neither a missing name nor the same name twice side by side.
 std::vector<std::string> GroupedNames(const std::vector<std::string>& groups,
@@ -179,7 +169,7 @@ bool TakeSecondHeader(const std::vector<std::string_view>& fields, DelimitedTabl
     const std::optional<double> number = ParseDecimal(field);
     if (number && std::isfinite(*number)) return false;
     if (number) continue;
-    ++(WithoutBrackets(field) != field || IsUnit(field) ? units : words);
+    ++(WithoutBrackets(field) != field || ParsedUnit(field) ? units : words);
   }
   if (words > 0) {
     const std::vector<std::string> names = GroupedNames(table->header, fields);
@@ -322,31 +312,6 @@ std::vector<std::string_view> SplitFields(std::string_view line, char delimiter)
     if (end == std::string_view::npos) return fields;
     at = end + 1;
   }
-}
-
-ColumnName SplitColumnName(const std::string& header) {
-  const size_t open = header.find_first_of("[(");
-  if (open == std::string::npos) return {header, ""};
-  const size_t end = header.find_last_not_of(' ', open == 0 ? 0 : open - 1);
-  const size_t close = header.find_first_of("])", open);
-  return {open == 0 ? "" : header.substr(0, end + 1),
-          header.substr(open + 1, close == std::string::npos ? close : close - open - 1)};
-}
-
-std::string UnitOfColumn(const DelimitedTable& table, Eigen::Index column) {
-  const size_t k = static_cast<size_t>(column);
-  if (k < table.units.size() && !table.units[k].empty()) return table.units[k];
-  return SplitColumnName(table.header[k]).unit;
-}
-
-std::string LengthUnitOfColumn(const DelimitedTable& table, Eigen::Index column) {
-  std::string unit = UnitOfColumn(table, column);
-  try {
-    ParseQuantity("1 " + unit, kLength);
-  } catch (const std::invalid_argument&) {
-    return "";
-  }
-  return unit;
 }
 
 std::string ReadFilledFile(const std::filesystem::path& file) {

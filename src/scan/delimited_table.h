@@ -53,19 +53,6 @@ std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::s
 // The same, but throws InputError listing the columns of the table when there is no such column.
 Eigen::Index RequireColumn(const DelimitedTable& table, const std::string& name);
 
-// The name of a column, and the unit behind it in brackets or parentheses: "Force" and "kN" of
-// "Force [kN]". The unit is empty where there is none.
-struct ColumnName {
-  std::string name, unit;
-};
-ColumnName SplitColumnName(const std::string& header);
-
-// The unit that a table with names gives for a column, in the line below the names or else in
-// brackets in the name; empty where it gives none.
-std::string UnitOfColumn(const DelimitedTable& table, Eigen::Index column);
-// The same where that is a unit of length; empty where it is another remark.
-std::string LengthUnitOfColumn(const DelimitedTable& table, Eigen::Index column);
-
 // The delimiter that a line such as "sep=;" declares, with which spreadsheet programs begin a file.
 std::optional<char> DeclaredDelimiter(std::string_view line);
 

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include "core/error.h"
+#include "core/letter_case.h"
+#include "scan/column_name.h"
+#include "scan/column_units.h"
 
 namespace lacuna {
 namespace {
@@ -38,11 +40,6 @@ constexpr Names kInPlane[] = {
 // The status flags of DICe of a correlation that has succeeded.
 const std::set<double> kSucceeded = {0, 1, 2, 3, 4, 6, 15, 18, 26};
 constexpr const char* kStatusOfDice = "status_flag";
-
-std::string InLowerCase(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 // The column of this name, in any case where there is only one.
 std::optional<Eigen::Index> Find(const std::vector<std::string>& header, const std::string& name) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scan/column_units.h"
 #include "scan/delimited_table.h"
 #include "scan/marker_tracks.h"
 #include "scan/time_series.h"

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -12,7 +11,9 @@
 #include <utility>
 
 #include "core/error.h"
+#include "geometry/text_scanner.h"
 #include "scan/capture_tables.h"
+#include "scan/column_units.h"
 #include "scan/delimited_table.h"
 #include "scan/table_numbers.h"
 #include "scan/time_series.h"
@@ -94,8 +95,7 @@ TrcHeader ReadTrcHeader(const std::filesystem::path& file,
 
 MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns,
                               FileTimes times) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = LowerExtension(file);
   if (extension == ".c3d") return ReadC3d(file, times);
   if (extension == ".trc") return ReadTrc(file, times);
   switch (CaptureTableOf(file)) {

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "core/error.h"
+#include "core/median.h"
 
 namespace lacuna {
 
@@ -39,8 +41,7 @@ void WarnOfOtherRate(const std::filesystem::path& file, double rate, MarkerTrack
   std::vector<double> intervals;
   for (Eigen::Index k = 0; k < count; ++k)
     intervals.push_back(tracks->times[k + 1] - tracks->times[k]);
-  std::nth_element(intervals.begin(), intervals.begin() + count / 2, intervals.end());
-  const double typical = 1 / intervals[static_cast<size_t>(count / 2)];
+  const double typical = 1 / Median(std::move(intervals));
   const double mean = static_cast<double>(count) / (tracks->times[count] - tracks->times[0]);
   if (!RatesDiffer(typical, rate, static_cast<size_t>(count)) ||
       !RatesDiffer(mean, rate, static_cast<size_t>(count)))

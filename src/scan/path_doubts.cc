@@ -13,6 +13,7 @@
 #include "core/median.h"
 #include "core/quantity.h"
 #include "geometry/rotation.h"
+#include "scan/column_name.h"
 #include "scan/delimited_table.h"
 
 namespace lacuna {

@@ -20,6 +20,8 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "geometry/ply_header.h"
+#include "geometry/text_scanner.h"
+#include "scan/column_units.h"
 #include "scan/delimited_table.h"
 #include "scan/displacement_table.h"
 #include "scan/pcd_header.h"
@@ -250,19 +252,9 @@ PointCloud PointsOfTable(DelimitedTable table, const PointColumns& columns,
   return cloud;
 }
 
-namespace {
-
-std::string LowerCaseExtension(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
-}  // namespace
-
 PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& columns,
                          std::vector<std::string>* notes, CorrelationTable* correlation) {
-  const std::string extension = LowerCaseExtension(file);
+  const std::string extension = LowerExtension(file);
   if (extension == ".ply" || extension == ".pcd") return ReadWithPcl(file, extension == ".ply");
   return PointsOfTable(ReadDelimitedTable(file), columns, notes, correlation);
 }
@@ -270,7 +262,7 @@ PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& 
 CorrelationTable ReadCorrelationTable(const std::filesystem::path& file,
                                       const PointColumns& columns) {
   CorrelationTable correlation;
-  const std::string extension = LowerCaseExtension(file);
+  const std::string extension = LowerExtension(file);
   if (extension == ".ply" || extension == ".pcd") return correlation;
   try {
     PointsOfTable(ReadDelimitedTable(file), columns, nullptr, &correlation);

@@ -14,6 +14,7 @@
 #include "core/npy.h"
 #include "geometry/nearest.h"
 #include "geometry/tri_mesh.h"
+#include "scan/column_units.h"
 #include "scan/delimited_table.h"
 #include "scan/frame_list.h"
 #include "scan/frame_points.h"

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "geometry/rotation.h"
+#include "scan/column_units.h"
 #include "scan/time_series.h"
 #include "scan/yaml_format.h"
 

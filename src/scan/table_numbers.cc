@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 
 namespace lacuna {
 
@@ -23,8 +24,7 @@ std::optional<double> ParseNumber(std::string_view text) {
 }
 
 bool IsMissing(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string lower = InLowerCase(text);
   if (lower.starts_with("1.#") || lower.starts_with("-1.#")) return !lower.ends_with("#inf");
   constexpr std::array<std::string_view, 7> kWords{"na", "n/a", "#n/a", "null", "none", "-", "--"};
   return std::find(kWords.begin(), kWords.end(), lower) != kWords.end();

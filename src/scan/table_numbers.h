@@ -17,9 +17,8 @@ std::optional<double> ParseNumber(std::string_view text);
 // the place of a value that is missing (IsMissing).
 std::optional<double> ParseDecimal(std::string_view text);
 
-// Whether an entry says that there is no value: "NA", "N/A", "#N/A", "NULL", "None" in any case,
-// "-",
-// "--", or what C programs of Windows print for NaN, such as "1.#QNAN".
+// Whether an entry says that there is no value: "NA", "N/A", "#N/A", "NULL" or "None" in any case,
+// "-" or "--", or what C programs of Windows print for NaN, such as "1.#QNAN".
 bool IsMissing(std::string_view text);
 
 // Whether the comma in a number may as well separate thousands: in "1,005", but not in "0,500" or

@@ -51,20 +51,8 @@ TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data, const 
 double ReadUnit(const Config& config, const std::string& key, const Dimension& dimension,
                 const std::string& default_unit);
 
-// Throws InputError naming the table where it gives another unit for the column than `unit`: in the
-// line below the names, in the name in brackets, as in "Force [kN]", or at its end where that is a
-// unit of this dimension, as in "F/kN", "F_kN" and "F in kN". A unit of another dimension, and one
-// of which only the case differs ("KN"), is refused, too. Other words in brackets are remarks, as
-// in "Force (left)", and so is "(min)", a minimum. `key` is the one of recording.yaml that gives
-// the unit. A table without names has no such columns.
-void RefuseOtherUnit(const DelimitedTable& table, Eigen::Index column, double unit,
-                     const Dimension& dimension, const std::string& key);
-
 // The place of a row for messages: "load.csv:7", or "load.npy: row 7" where the file is no text.
 std::string PlaceOfRow(const DelimitedTable& table, Eigen::Index row);
-
-void RefuseOtherUnits(const DelimitedTable& table, const std::vector<std::string>& names,
-                      double unit, const Dimension& dimension, const std::string& key);
 
 // Columns of a table, multiplied by `unit`: names × rows.
 Eigen::MatrixXd ColumnsOf(const DelimitedTable& table, const std::vector<std::string>& names,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/median.h"
 #include "geometry/nearest.h"
 #include "surface/poisson.h"
 #include "surface/repair.h"
@@ -90,9 +91,8 @@ void Conclude(const SurfaceOptions& options, Surface& surface) {
 double TypicalSpacing(const Eigen::Matrix3Xd& points) {
   const int k = static_cast<int>(std::min<Eigen::Index>(8, points.cols() - 1));
   // The nearest neighbour of each point is the point itself, hence k + 1.
-  Eigen::VectorXd reach = PointSearch(points).Nearest(points, k + 1).distance.row(k);
-  std::nth_element(reach.begin(), reach.begin() + reach.size() / 2, reach.end());
-  return std::sqrt(std::numbers::pi / k) * reach(reach.size() / 2);
+  const Eigen::VectorXd reach = PointSearch(points).Nearest(points, k + 1).distance.row(k);
+  return std::sqrt(std::numbers::pi / k) * Median({reach.begin(), reach.end()});
 }
 
 Surface ReconstructSurface(const PointCloud& oriented, const SurfaceOptions& options) {

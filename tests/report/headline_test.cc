@@ -88,47 +88,58 @@ TEST(Headline, TellsTheErrorWhatIsMissingAndWhatAddingItDid) {
           "is left is that of the noise, or no larger than the error of any model."));
 }
 
-// The diagnosis with drag names swelling, beside which the drag may be zero.
-TEST(Headline, SaysWhichAddedEffectMayBeLeftOut) {
-  ReportedModel first = Model(4e-4, 2.4);
-  first.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+RecordedEffect Drag() {
   RecordedEffect drag;
   drag.type = "drag";
   drag.title = "Drag";
   drag.sizes = {{"coefficient", "kg/m^3"}};
-  first.diagnosis->ranking = {drag};
+  return drag;
+}
+
+// With its 95 % interval.
+FittedParameter DragCoefficient(double low, double high) {
+  FittedParameter parameter;
+  parameter.name = "drag.coefficient";
+  parameter.estimate.low = low;
+  parameter.estimate.high = high;
+  return parameter;
+}
+
+// The diagnosis with drag names swelling, beside which the drag may be zero.
+TEST(Headline, SaysWhichAddedEffectMayBeLeftOut) {
+  ReportedModel first = Model(4e-4, 2.4);
+  first.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+  first.diagnosis->ranking = {Drag()};
   ReportedModel second = Model(2e-4, 1.2);
   second.added = "drag";
   second.diagnosis = Diagnosis(Verdict::kMissing, {"swelling"});
   ReportedModel third = Model(1e-4, 0.6);
   third.added = "swelling";
-  for (ReportedModel* model : {&second, &third}) {
-    model->calibration.parameters.resize(1);
-    model->calibration.parameters[0].name = "drag.coefficient";
-    model->calibration.parameters[0].estimate.low = 2;
-    model->calibration.parameters[0].estimate.high = 3;
-  }
+  second.calibration.parameters = third.calibration.parameters = {DragCoefficient(2, 3)};
   const std::string told = "Beside what was added later, drag may be zero: it may be left out.";
   EXPECT_THAT(Headline({first, second, third}), Not(Contains(told)));
   third.calibration.parameters[0].estimate.low = -1;
   EXPECT_THAT(Headline({first, second, third}), Contains(told));
+  // A model whose own addition does not count says nothing of the others.
+  RecordedEffect swelling;
+  swelling.type = "swelling";
+  swelling.sizes = {{"strain", "1"}};
+  second.diagnosis->ranking = {swelling};
+  FittedParameter& strain = third.calibration.parameters.emplace_back();
+  strain.name = "swelling.strain";
+  strain.estimate.low = -1;
+  strain.estimate.high = 1;
+  EXPECT_THAT(Headline({first, second, third}), Not(Contains(told)));
 }
 
 TEST(Headline, SaysThatAnEffectWhoseSizeMayBeZeroDoesNotCount) {
   ReportedModel before = Model(2e-4, 1.2);
   before.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
   Believe(&*before.diagnosis, {"drag"}, 0.98);
-  RecordedEffect drag;
-  drag.type = "drag";
-  drag.title = "Drag";
-  drag.sizes = {{"coefficient", "kg/m^3"}};
-  before.diagnosis->ranking = {drag};
+  before.diagnosis->ranking = {Drag()};
   ReportedModel after = Model(1.9e-4, 1.15);
   after.added = "drag";
-  after.calibration.parameters.resize(1);
-  after.calibration.parameters[0].name = "drag.coefficient";
-  after.calibration.parameters[0].estimate.low = 0;
-  after.calibration.parameters[0].estimate.high = 3;
+  after.calibration.parameters = {DragCoefficient(0, 3)};
   EXPECT_EQ(
       Headline({before, after}).back(),
       "The diagnosis names drag (98 %), but once it is fitted, its size may be zero, so that it "

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "scan/column_units.h"
 #include "scan/table_numbers.h"
 #include "scan/test_files.h"
 
