@@ -49,22 +49,13 @@ Eigen::MatrixXd Inverse(const Eigen::MatrixXd& symmetric) {
   return scale.asDiagonal() * inverse * scale.asDiagonal();
 }
 
-// The χ² of the direction `along` of the differences, with one degree of freedom.
-double SquareAlong(const Eigen::VectorXd& along, const Eigen::MatrixXd& information,
-                   const Eigen::VectorXd& score) {
-  const double known = along.dot(information * along);
-  return known > 0 ? std::pow(along.dot(score), 2) / known : 0;
-}
-
-}  // namespace
-
-AgreementTest TestAgreement(const std::vector<RecordingRows>& recordings,
+// The equations of all recordings: p parameters for each, its own amounts, and the shared ones.
+Equations AssembleEquations(const std::vector<RecordingRows>& recordings,
                             const std::vector<LinearPrior>& shared_priors,
                             const Eigen::VectorXd& typical, double variance) {
   const Eigen::Index count = static_cast<Eigen::Index>(recordings.size());
   const Eigen::Index p = typical.size();
   const Eigen::Index shared = static_cast<Eigen::Index>(shared_priors.size());
-  CHECK_GE(count, 2);
   Eigen::Index size = count * p + shared;
   for (const RecordingRows& rows : recordings) size += rows.own.cols();
 
@@ -91,6 +82,103 @@ AgreementTest TestAgreement(const std::vector<RecordingRows>& recordings,
     columns << rows.parameters, rows.own, rows.shared;
     AddRows(rows.residual, columns, unknowns, variance, &equations);
   }
+  return equations;
+}
+
+// The matrix that takes the parameters of all recordings to their differences from the last
+// recording, in typical changes: (R − 1)p × Rp.
+Eigen::MatrixXd DifferencesFromLast(Eigen::Index recordings, const Eigen::VectorXd& typical) {
+  const Eigen::Index p = typical.size();
+  const Eigen::Index differences = (recordings - 1) * p;
+  Eigen::MatrixXd contrast = Eigen::MatrixXd::Zero(differences, recordings * p);
+  for (Eigen::Index row = 0; row < differences; ++row) {
+    const Eigen::Index k = row % p;
+    contrast(row, row) = 1 / typical[k];
+    contrast(row, differences + k) = -1 / typical[k];
+  }
+  return contrast;
+}
+
+// The eigenvectors of a symmetric matrix along which the recordings determine the differences
+// better than a typical change.
+struct DeterminedDirections {
+  std::vector<Eigen::VectorXd> vectors;
+  std::vector<double> eigenvalues;
+
+  int Count() const { return static_cast<int>(vectors.size()); }
+  // The quadratic form of the inverse of the matrix, restricted to these directions.
+  double ChiSquareOf(const Eigen::VectorXd& at) const {
+    double sum = 0;
+    for (size_t k = 0; k < vectors.size(); ++k)
+      sum += std::pow(vectors[k].dot(at), 2) / eigenvalues[k];
+    return sum;
+  }
+};
+
+// Those of a covariance of differences in typical changes: of variance below 1.
+DeterminedDirections DeterminedByCovariance(const Eigen::MatrixXd& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+  // A smaller variance than the rounding of the largest one is not known, and may be negative.
+  const double least = std::numeric_limits<double>::epsilon() *
+                       static_cast<double>(covariance.rows()) *
+                       eigen.eigenvalues().cwiseAbs().maxCoeff();
+  DeterminedDirections determined;
+  for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
+    const double variance = std::max(eigen.eigenvalues()[k], least);
+    if (variance >= 1) continue;
+    determined.vectors.emplace_back(eigen.eigenvectors().col(k));
+    determined.eigenvalues.push_back(variance);
+  }
+  return determined;
+}
+
+// Those of an information matrix, the inverse of a covariance: of information above 1.
+DeterminedDirections DeterminedByInformation(const Eigen::MatrixXd& information) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  DeterminedDirections determined;
+  for (Eigen::Index k = 0; k < information.rows(); ++k) {
+    if (eigen.eigenvalues()[k] <= 1) continue;
+    determined.vectors.emplace_back(eigen.eigenvectors().col(k));
+    determined.eigenvalues.push_back(eigen.eigenvalues()[k]);
+  }
+  return determined;
+}
+
+// The χ² of the direction `along` of the differences, with one degree of freedom.
+double SquareAlong(const Eigen::VectorXd& along, const Eigen::MatrixXd& information,
+                   const Eigen::VectorXd& score) {
+  const double known = along.dot(information * along);
+  return known > 0 ? std::pow(along.dot(score), 2) / known : 0;
+}
+
+// Fills in what the test says of one parameter, with the information M and the score s of all
+// differences.
+void JudgeParameter(Eigen::Index parameter, const Eigen::MatrixXd& information,
+                    const Eigen::VectorXd& score, AgreementTest* test) {
+  const Eigen::Index p = test->change.rows(), count = test->change.cols();
+  std::vector<Eigen::Index> of_parameter;
+  for (Eigen::Index i = 0; i + 1 < count; ++i) of_parameter.push_back(i * p + parameter);
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(score.size());
+  for (Eigen::Index i = 0; i + 1 < count; ++i) {
+    const Eigen::VectorXd one = Eigen::VectorXd::Unit(score.size(), i * p + parameter);
+    all += one;
+    test->odd(parameter, i) = SquareAlong(one, information, score);
+  }
+  test->odd(parameter, count - 1) = SquareAlong(all, information, score);
+  const DeterminedDirections own = DeterminedByInformation(information(of_parameter, of_parameter));
+  if (own.Count() > 0)
+    test->p_values[parameter] = ChiSquareTail(own.ChiSquareOf(score(of_parameter)), own.Count());
+}
+
+}  // namespace
+
+AgreementTest TestAgreement(const std::vector<RecordingRows>& recordings,
+                            const std::vector<LinearPrior>& shared_priors,
+                            const Eigen::VectorXd& typical, double variance) {
+  const Eigen::Index count = static_cast<Eigen::Index>(recordings.size());
+  const Eigen::Index p = typical.size();
+  CHECK_GE(count, 2);
+  const Equations equations = AssembleEquations(recordings, shared_priors, typical, variance);
   const Eigen::MatrixXd covariance = Inverse(equations.precision);
   const Eigen::VectorXd mean = covariance * equations.right;
 
@@ -102,59 +190,24 @@ AgreementTest TestAgreement(const std::vector<RecordingRows>& recordings,
       if (test.deviation(k, i) > typical[k])
         test.deviation(k, i) = std::numeric_limits<double>::infinity();
 
-  // The differences from the last recording, in typical changes.
-  const Eigen::Index differences = (count - 1) * p;
-  Eigen::MatrixXd contrast = Eigen::MatrixXd::Zero(differences, count * p);
-  for (Eigen::Index row = 0; row < differences; ++row) {
-    const Eigen::Index k = row % p;
-    contrast(row, row) = 1 / typical[k];
-    contrast(row, differences + k) = -1 / typical[k];
-  }
-  const Eigen::VectorXd apart = contrast * mean.head(count * p);
-  const Eigen::MatrixXd of_apart =
-      contrast * covariance.topLeftCorner(count * p, count * p) * contrast.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(of_apart);
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(differences, differences);
-  // A smaller variance than the rounding of the largest one is not known, and may be negative.
-  const double least = std::numeric_limits<double>::epsilon() * static_cast<double>(differences) *
-                       eigen.eigenvalues().cwiseAbs().maxCoeff();
-  for (Eigen::Index k = 0; k < differences; ++k) {
-    const double spread = std::max(eigen.eigenvalues()[k], least);
-    const Eigen::VectorXd direction = eigen.eigenvectors().col(k);
-    if (spread >= 1) continue;
-    information += direction * direction.transpose() / spread;
-    test.chi_square += std::pow(direction.dot(apart), 2) / spread;
-    ++test.degrees_of_freedom;
-  }
+  const Eigen::MatrixXd contrast = DifferencesFromLast(count, typical);
+  const Eigen::VectorXd differences = contrast * mean.head(count * p);
+  const DeterminedDirections determined = DeterminedByCovariance(
+      contrast * covariance.topLeftCorner(count * p, count * p) * contrast.transpose());
+  test.chi_square = determined.ChiSquareOf(differences);
+  test.degrees_of_freedom = determined.Count();
   if (test.degrees_of_freedom > 0)
     test.p_value = ChiSquareTail(test.chi_square, test.degrees_of_freedom);
 
-  const Eigen::VectorXd score = information * apart;
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(differences.size(), differences.size());
+  for (size_t k = 0; k < determined.vectors.size(); ++k) {
+    const Eigen::VectorXd& direction = determined.vectors[k];
+    information += direction * direction.transpose() / determined.eigenvalues[k];
+  }
+  const Eigen::VectorXd score = information * differences;
   test.p_values = Eigen::VectorXd::Ones(p);
   test.odd = Eigen::MatrixXd::Zero(p, count);
-  for (Eigen::Index k = 0; k < p; ++k) {
-    std::vector<Eigen::Index> of_parameter;
-    for (Eigen::Index i = 0; i + 1 < count; ++i) of_parameter.push_back(i * p + k);
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(differences);
-    for (Eigen::Index i = 0; i + 1 < count; ++i) {
-      const Eigen::VectorXd one = Eigen::VectorXd::Unit(differences, i * p + k);
-      all += one;
-      test.odd(k, i) = SquareAlong(one, information, score);
-    }
-    test.odd(k, count - 1) = SquareAlong(all, information, score);
-    const Eigen::MatrixXd known = information(of_parameter, of_parameter);
-    const Eigen::VectorXd own_score = score(of_parameter);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own_eigen(known);
-    double chi_square = 0;
-    int freedom = 0;
-    for (Eigen::Index a = 0; a < known.rows(); ++a) {
-      if (own_eigen.eigenvalues()[a] <= 1) continue;
-      chi_square +=
-          std::pow(own_eigen.eigenvectors().col(a).dot(own_score), 2) / own_eigen.eigenvalues()[a];
-      ++freedom;
-    }
-    if (freedom > 0) test.p_values[k] = ChiSquareTail(chi_square, freedom);
-  }
+  for (Eigen::Index k = 0; k < p; ++k) JudgeParameter(k, information, score, &test);
   return test;
 }
 

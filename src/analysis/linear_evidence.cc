@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -25,7 +26,7 @@ struct ScaledInformation {
 double LogTwiceNormal(double z) {
   if (z > -30) return std::log(std::erfc(-z / std::sqrt(2.0)));
   // An asymptotic series where erfc underflows.
-  return -0.5 * z * z - std::log(-z * std::sqrt(0.5 * M_PI));
+  return -0.5 * z * z - std::log(-z * std::sqrt(0.5 * std::numbers::pi));
 }
 
 double LogMeanExp(const std::vector<double>& values) {

@@ -45,15 +45,17 @@ Eigen::VectorXd Ranks(const std::vector<double>& values) {
   return ranks;
 }
 
-// Interpolates the rows linearly at `time`; returns false outside the range of the frames.
+// Interpolates the rows linearly at `time`, which multiplies the variance of white noise by
+// `noise_gain`; returns false outside the range of the frames.
 bool At(const Eigen::VectorXd& times, const Eigen::MatrixXd& rows, double time,
-        Eigen::VectorXd* value) {
+        Eigen::VectorXd* value, double* noise_gain) {
   const Eigen::Index count = times.size();
   if (count < 2 || time < times[0] || time > times[count - 1]) return false;
   const double* after = std::upper_bound(times.data(), times.data() + count - 1, time);
   const Eigen::Index next = std::max<Eigen::Index>(1, after - times.data());
   const double share = (time - times[next - 1]) / (times[next] - times[next - 1]);
   *value = (1 - share) * rows.col(next - 1) + share * rows.col(next);
+  *noise_gain = (1 - share) * (1 - share) + share * share;
   return true;
 }
 
@@ -311,12 +313,15 @@ Repeatability CompareRepeats(const Eigen::VectorXd& first_times, const Eigen::Ma
     Repeatability result;
     result.delay = shift;
     Eigen::VectorXd there;
+    double noise_gain = 1, gains = 0;
     for (Eigen::Index f = 0; f < first.cols(); ++f) {
-      if (!At(second_times, second, first_times[f] + shift, &there)) continue;
+      if (!At(second_times, second, first_times[f] + shift, &there, &noise_gain)) continue;
       between.col(f) = there - first.col(f);
+      gains += 0.5 * (1 + noise_gain);
       ++result.frames;
     }
-    if (result.frames >= kFewest) result.distance = Rms(PointLengths(Centred(between)));
+    if (result.frames >= kFewest)
+      result.distance = Rms(PointLengths(Centred(between))) / std::sqrt(gains / result.frames);
     return result;
   };
   // A delay with little overlap could appear best, so at least half of the initial overlap is

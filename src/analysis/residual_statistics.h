@@ -95,11 +95,15 @@ MeanVector MeanOver(const Eigen::MatrixXd& vectors, int first, int last);
 // Compares two recordings of the same experiment. The second is interpolated linearly at the times
 // of the first plus a delay; the delay that minimises the distance is searched for within
 // ± `largest_delay` of `delay` (s). The mean difference of each row is subtracted, because markers
-// may have been attached at slightly different places.
+// may have been attached at slightly different places. Interpolation at the share s between two
+// frames multiplies the variance of the second recording's noise by (1 − s)² + s², so that the
+// smallest distance would be sought midway between frames. The distance is therefore divided by the
+// root of the mean over the frames of (1 + (1 − s)² + s²)/2, as if the noise were that of two
+// measurements.
 struct Repeatability {
   int frames = 0;              // frames of the first that the second covers; 0: no result
-  double delay = kUnknown;     // s
-  double distance = kUnknown;  // m, rms between the two; the error of each is 1/√2 of it
+  double delay = kUnknown;     // s, how much later the same motion is in the second
+  double distance = kUnknown;  // m, rms between the two; the noise of each is 1/√2 of it
 };
 Repeatability CompareRepeats(const Eigen::VectorXd& first_times, const Eigen::MatrixXd& first,
                              const Eigen::VectorXd& second_times, const Eigen::MatrixXd& second,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -13,6 +14,8 @@ namespace lacuna {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kFewestFrames = 10;  // of a row that is tested
+constexpr double kWork = 5e8;      // multiplications of one test, about half a second
 
 struct Products {
   double sum = 0, first_squares = 0, second_squares = 0;
@@ -35,12 +38,6 @@ Products LaggedProducts(const Eigen::MatrixXd& centred, Eigen::Index row, Eigen:
   for (Eigen::Index f = 0; f + lag < centred.cols(); ++f)
     products.Add(centred(row, f), centred(row, f + lag));
   return products;
-}
-
-// ρ_lag of one row; the denominator includes all frames in which it was seen.
-double Autocorrelation(const Eigen::MatrixXd& centred, Eigen::Index row, Eigen::Index lag) {
-  const double squares = LaggedProducts(centred, row, 0).sum;
-  return squares > 0 ? LaggedProducts(centred, row, lag).sum / squares : kUnknown;
 }
 
 double PooledAutocorrelation(const Eigen::MatrixXd& centred, Eigen::Index lag) {
@@ -84,6 +81,63 @@ double LjungBoxStatistic(const Eigen::MatrixXd& known, const Eigen::MatrixXd& se
 // A Fisher–Yates shuffle. std::shuffle may differ between standard libraries.
 void Shuffle(std::vector<int>* order, std::mt19937* random) {
   for (size_t k = order->size(); k > 1; --k) std::swap((*order)[k - 1], (*order)[(*random)() % k]);
+}
+
+// One row per point; its shifts copy contiguous numbers.
+using PointRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// For each component of the points (m rows, n columns): the centred rows, 0 where an entry is not
+// known, scaled so that n' ρ² of two points is the square of the product of their rows; n' is the
+// geometric mean of their numbers of known entries. Rows with too few entries are 0. Of many points
+// an even selection is taken, because the work grows with their square.
+std::vector<PointRows> PointsByAxis(const Eigen::MatrixXd& centred, Eigen::Index components) {
+  constexpr Eigen::Index kMostPoints = 100;
+  const Eigen::Index all = centred.rows() / components, points = std::min(all, kMostPoints);
+  std::vector<PointRows> axes(static_cast<size_t>(components),
+                              PointRows::Zero(points, centred.cols()));
+  for (Eigen::Index axis = 0; axis < components; ++axis) {
+    for (Eigen::Index k = 0; k < points; ++k) {
+      const Eigen::RowVectorXd row = centred.row(components * (k * all / points) + axis);
+      const double seen = static_cast<double>((!row.array().isNaN()).count());
+      const Eigen::RowVectorXd known = row.array().isNaN().select(0.0, row);
+      if (seen >= kFewestFrames && known.norm() > 0)
+        axes[static_cast<size_t>(axis)].row(k) = known * (std::pow(seen, 0.25) / known.norm());
+    }
+  }
+  return axes;
+}
+
+// Σ n' ρ² over all ordered pairs and axes, those of a point with itself included: the squared norm
+// of X Xᵀ, which Xᵀ X has too.
+double SumOfSquaredCorrelations(const std::vector<PointRows>& axes) {
+  double sum = 0;
+  for (const PointRows& points : axes)
+    sum += points.rows() < points.cols() ? (points * points.transpose()).squaredNorm()
+                                         : (points.transpose() * points).squaredNorm();
+  return sum;
+}
+
+// The p-value of the test by random circular shifts.
+double ProbabilityByShifts(const std::vector<PointRows>& axes) {
+  const Eigen::Index points = axes.front().rows(), frames = axes.front().cols();
+  const double observed = SumOfSquaredCorrelations(axes);
+  const double cost = static_cast<double>(axes.size()) *
+                      static_cast<double>(points * frames * std::min(points, frames));
+  const int trials = static_cast<int>(std::clamp(kWork / cost, 199.0, 999.0));
+  std::mt19937 random(1);
+  std::vector<PointRows> shifted = axes;
+  int as_large = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    for (Eigen::Index k = 0; k < points; ++k) {
+      const Eigen::Index lag = static_cast<Eigen::Index>(random()) % frames;
+      for (size_t axis = 0; axis < axes.size(); ++axis) {
+        shifted[axis].row(k).head(lag) = axes[axis].row(k).tail(lag);
+        shifted[axis].row(k).tail(frames - lag) = axes[axis].row(k).head(frames - lag);
+      }
+    }
+    as_large += SumOfSquaredCorrelations(shifted) >= observed;
+  }
+  return (1.0 + as_large) / (1.0 + trials);
 }
 
 // Least squares over a logarithmic grid. The sum is smooth in ln ℓ, so a spacing of 2 % suffices.
@@ -135,14 +189,13 @@ double ChiSquareTail(double statistic, int degrees_of_freedom) {
 }
 
 TimeWhiteness WhitenessInTime(const Eigen::MatrixXd& series) {
-  constexpr int kFewest = 10, kLags = 10;
-  constexpr double kWork = 5e8;  // multiplications, about half a second
+  constexpr int kLags = 10;
   const Eigen::MatrixXd centred = Centred(series);
   std::vector<Eigen::Index> rows;
   int most = 0;
   for (Eigen::Index row = 0; row < centred.rows(); ++row) {
     const Products all = LaggedProducts(centred, row, 0);
-    if (all.count < kFewest || all.sum == 0) continue;
+    if (all.count < kFewestFrames || all.sum == 0) continue;
     rows.push_back(row);
     most = std::max(most, all.count);
   }
@@ -173,34 +226,21 @@ TimeWhiteness WhitenessInTime(const Eigen::MatrixXd& series) {
 }
 
 SpaceWhiteness WhitenessInSpace(const Eigen::MatrixXd& vectors, const Eigen::Matrix3Xd& places) {
-  CHECK_EQ(vectors.rows(), 3 * places.cols());
-  constexpr int kFewest = 10;
+  if (places.cols() == 0) return {};
+  CHECK_EQ(vectors.rows() % places.cols(), 0);
   const Eigen::MatrixXd centred = Centred(vectors);
-  std::vector<double> lag_one;
-  for (Eigen::Index row = 0; row < centred.rows(); ++row)
-    lag_one.push_back(Autocorrelation(centred, row, 1));
+  const Eigen::Index components = vectors.rows() / places.cols();
   SpaceWhiteness whiteness;
-  double statistic = 0, sum = 0;
-  int freedom = 0, known = 0;
+  double sum = 0;
+  int known = 0;
   for (int i = 0; i < places.cols(); ++i) {
     for (int j = i + 1; j < places.cols(); ++j) {
       Products of_pair;
-      for (int axis = 0; axis < 3; ++axis) {
-        Products products;
-        for (Eigen::Index f = 0; f < centred.cols(); ++f) {
-          products.Add(centred(3 * i + axis, f), centred(3 * j + axis, f));
-          of_pair.Add(centred(3 * i + axis, f), centred(3 * j + axis, f));
-        }
-        const double correlation = products.Correlation();
-        if (products.count < kFewest || std::isnan(correlation)) continue;
-        const double memory = std::clamp(lag_one[3 * i + axis] * lag_one[3 * j + axis], 0.0, 1.0);
-        // Subtracting the means costs one degree of freedom.
-        const double independent = (products.count - 1) * (1 - memory) / (1 + memory);
-        statistic += independent * correlation * correlation;
-        ++freedom;
-      }
+      for (Eigen::Index axis = 0; axis < components; ++axis)
+        for (Eigen::Index f = 0; f < centred.cols(); ++f)
+          of_pair.Add(centred(components * i + axis, f), centred(components * j + axis, f));
       PointPair pair{i, j, (places.col(i) - places.col(j)).norm()};
-      if (of_pair.count >= 3 * kFewest) pair.correlation = of_pair.Correlation();
+      if (of_pair.count >= components * kFewestFrames) pair.correlation = of_pair.Correlation();
       if (!std::isnan(pair.correlation)) {
         sum += pair.correlation;
         ++known;
@@ -208,11 +248,10 @@ SpaceWhiteness WhitenessInSpace(const Eigen::MatrixXd& vectors, const Eigen::Mat
       whiteness.pairs.push_back(pair);
     }
   }
-  if (known > 0) {
-    whiteness.mean_correlation = sum / known;
-    whiteness.correlation_length = FitCorrelationLength(whiteness.pairs);
-  }
-  if (freedom > 0) whiteness.p_value = ChiSquareTail(statistic, freedom);
+  if (known == 0) return whiteness;
+  whiteness.mean_correlation = sum / known;
+  whiteness.correlation_length = FitCorrelationLength(whiteness.pairs);
+  whiteness.p_value = ProbabilityByShifts(PointsByAxis(centred, components));
   return whiteness;
 }
 

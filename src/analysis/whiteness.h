@@ -36,8 +36,10 @@ struct TimeWhiteness {
 };
 TimeWhiteness WhitenessInTime(const Eigen::MatrixXd& series);
 
-// Tests whether the vectors (3m × n) of different points are correlated, as a function of the
-// distance between their places (3 × m, m). The temporal means of the vectors are subtracted first.
+// Tests whether the errors of m different points are correlated, as a function of the distance
+// between their places (3 × m, m). `vectors` has one row per component and n columns: c·m × n, the
+// c components of a point in consecutive rows (3 for vectors, 1 for errors along a normal). Their
+// temporal means are subtracted first.
 struct PointPair {
   int first = 0, second = 0;  // columns of `places`
   double distance = 0;        // m
@@ -49,11 +51,15 @@ struct SpaceWhiteness {
   // The length ℓ (m) of the correlation exp(−d/ℓ), by least squares over the pairs. 0 if it is
   // below a tenth of the smallest distance, infinite if it is above ten times the largest.
   double correlation_length = kUnknown;
-  // p-value of Σ n' ρ² over pairs and axes, which is χ²-distributed for uncorrelated points
-  // (Breusch & Pagan, Rev. Econ. Stud. 47, 1980). n' = n (1 − ρ_1i ρ_1j) / (1 + ρ_1i ρ_1j) is the
-  // effective number of independent frames of two autocorrelated rows (Bartlett, J. R. Stat. Soc.
-  // 98, 1935).
-  double p_value = kUnknown;
+  // The p-value of Σ n ρ² over pairs and axes (Breusch & Pagan, Rev. Econ. Stud. 47, 1980) by a
+  // randomisation test: the fraction of random circular shifts in time, one lag for all components
+  // of a point, with a sum at least as large. The shifts leave each point's correlation in time as
+  // it is (Lotwick & Silverman, J. R. Stat. Soc. B 44, 1982), so that correlation in time is not
+  // taken for correlation between points. In simulations of independent points whose errors are
+  // correlated over a twentieth of the frames, 2 % of the p-values were below 0.01 and 10 % below
+  // 0.05; over a quarter of the frames, 13 % and 29 %. Every call uses the same shifts; of more
+  // than 100 points, 100 are tested.
+  double p_value = kUnknown;  // at least 1/(shifts + 1); 999 shifts, down to 199 for long series
 };
 SpaceWhiteness WhitenessInSpace(const Eigen::MatrixXd& vectors, const Eigen::Matrix3Xd& places);
 

@@ -58,6 +58,8 @@ void PrintFiles(const ComparisonRecord& record, const std::string& run) {
 // The comparison that the run holds. Throws InputError where there is none of its fit.
 ComparisonRecord StoredComparison(const std::filesystem::path& run) {
   const std::filesystem::path file = run / "comparison/comparison.json";
+  if (!std::filesystem::exists(file))
+    throw InputError({file.string()}, "there is no such file; `lacuna compare` writes it");
   ComparisonRecord stored = ReadComparisonFile(file);
   if (!IsComparisonOf(HashFile(FinishedStage(run, "calibration") / "calibration.json"), file))
     throw InputError(

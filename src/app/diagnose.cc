@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "app/commands.h"
@@ -39,26 +37,6 @@ void PrintStep(const Ledger& ledger) {
   (void)fflush(stdout);
 }
 
-// A picture of the held-out error of every model that could be fitted.
-LedgerPicture MakeLedgerPicture(const Ledger& ledger) {
-  const LedgerModel& first = ledger.models.front();
-  LedgerPicture picture;
-  const char* frames = first.errors.has_held_out ? "held-out" : "fitted";
-  picture.title = fmt::format("{}: rms error in the {} frames", first.name, frames);
-  for (const LedgerModel& model : ledger.models) {
-    if (!model.record.usable) continue;
-    picture.models.push_back({picture.models.empty()       ? "initial model"
-                              : picture.models.size() == 1 ? "with " + model.added
-                                                           : "and with " + model.added,
-                              model.errors.held_out_rms});
-  }
-  // The noise of a scan's patches differs between recordings, so that no single line can show it.
-  const bool has_scans = std::any_of(first.record.recordings.begin(), first.record.recordings.end(),
-                                     [](const auto& recording) { return recording.scan; });
-  if (!has_scans) picture.noise = std::sqrt(3.0) * first.record.noise;
-  return picture;
-}
-
 int RunUntilDone(const DiagnoseArguments& arguments, const OutputOptions& output) {
   ExtensionOptions options;
   options.diagnosis.refits = arguments.refits;
@@ -76,7 +54,7 @@ int RunUntilDone(const DiagnoseArguments& arguments, const OutputOptions& output
                LedgerReport(ledger),
                (std::filesystem::path(arguments.run) / "ledger.txt").string());
   const std::filesystem::path picture = std::filesystem::path(arguments.run) / "ledger.png";
-  const PictureResult drawn = RenderLedgerPng(picture, MakeLedgerPicture(ledger));
+  const PictureResult drawn = RenderLedgerPng(picture, PictureOf(ledger));
   if (output.PrintsText() && (output.verbose || !drawn.IsUsable()))
     fmt::print("{}\n", drawn.IsUsable() ? picture.string() + " shows these errors as a picture"
                                         : drawn.message);

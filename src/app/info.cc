@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "app/commands.h"
 #include "calibration/calibration_run.h"
@@ -45,7 +46,7 @@ void DescribeSurface(const std::filesystem::path& file) {
              report.vertices, report.triangles, report.components);
   fmt::print("  size {}, area {:.6g}, volume {:.6g}\n", InOwnUnit(box), report.area, report.volume);
   fmt::print("  edges {:.4g} to {:.4g}, mean {:.4g}; smallest angle {:.1f} deg\n", report.min_edge,
-             report.max_edge, report.mean_edge, report.min_angle * 180 / M_PI);
+             report.max_edge, report.mean_edge, report.min_angle * 180 / std::numbers::pi);
   fmt::print("  closed {}, manifold {}, consistently oriented {}, free of self-intersections {}\n",
              say(report.IsClosed()), say(report.IsManifold()), say(report.IsOriented()),
              say(report.IsFreeOfIntersections()));
@@ -62,7 +63,8 @@ void DescribeTets(const std::filesystem::path& file) {
   fmt::print(
       "  radius-edge ratio {:.3f} mean, {:.3f} worst; dihedral angles {:.1f} to {:.1f} deg\n",
       quality.radius_edge_ratio.mean, quality.radius_edge_ratio.max,
-      quality.min_dihedral_angle * 180 / M_PI, quality.max_dihedral_angle * 180 / M_PI);
+      quality.min_dihedral_angle * 180 / std::numbers::pi,
+      quality.max_dihedral_angle * 180 / std::numbers::pi);
   for (const std::string& note : read.notes) fmt::print("  note: {}\n", note);
 }
 
@@ -92,8 +94,7 @@ void DescribeRun(const std::filesystem::path& folder) {
   }
   const RunRecord record = LoadRunRecord(folder / "results");
   fmt::print("  recording {}, {} frames, {} nodes, {} tetrahedra of order {}\n", record.recording,
-             record.frames.size(), record.mesh.node_count, record.mesh.tet_count,
-             record.mesh.order);
+             record.FrameCount(), record.mesh.node_count, record.mesh.tet_count, record.mesh.order);
   fmt::print("  |D_anim| {}; usable: {}\n",
              std::isnan(record.animation_residual)
                  ? "not measured"

@@ -8,7 +8,7 @@
 #include "app/commands.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_study.h"
-#include "report/headline.h"
+#include "report/reconstruction_headline.h"
 
 namespace lacuna {
 namespace {
@@ -67,7 +67,7 @@ void PrintSummary(const RunRecord& record, const std::filesystem::path& output) 
 
 void PrintShortSummary(const RunRecord& record, const std::filesystem::path& output) {
   fmt::print("\n{}; {} frames\n", AnimationResiduals(record, /*with_mean=*/false),
-             record.frames.size());
+             record.FrameCount());
   for (const std::string& warning : record.warnings) fmt::print("warning: {}\n", warning);
   fmt::print("The run was written to {}\n", output.string());
 }

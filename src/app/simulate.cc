@@ -3,8 +3,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <set>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -12,6 +15,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file_name.h"
+#include "core/hash.h"
 #include "experiment/listed_regions.h"
 #include "experiment/scene.h"
 #include "geometry/mesh_io.h"
@@ -29,6 +33,7 @@ struct Arguments {
   std::string scene;
   std::string output;
   std::string recording;
+  std::optional<uint64_t> seed;
 };
 
 // Nine components row by row, from xx, yy, zz, yz, xz, xy.
@@ -141,13 +146,19 @@ void RefuseFolderOfInputs(const std::filesystem::path& folder, const PredictionS
                                      input.file.filename().string()));
 }
 
+// Recordings of different experiments or names have different errors; `seed` gives others.
+uint64_t SeedOf(const std::string& experiment, const std::string& recording, uint64_t seed) {
+  const std::string hash = HashBytes(fmt::format("{}\n{}\n{}", experiment, recording, seed));
+  return std::stoull(hash.substr(0, 16), nullptr, 16);
+}
+
 // Plays the recordings of an experiment with its model, each into a folder of its own where there
 // are several.
 int PlayExperiment(const Arguments& arguments, const Config& config) {
   const PredictionStudy study = ReadPredictionStudy(config);
   std::set<std::string> folders;
   for (const PredictedRecording& item : study.recordings) {
-    if (item.scans != nullptr)
+    if (item.ShowsScans())
       throw InputError(SourcePosition{arguments.scene},
                        fmt::format("recording {} shows scans; only recordings of markers can be "
                                    "played",
@@ -174,8 +185,7 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
   }
   const TetMesh mesh = MakeReferenceBody(study).mesh;
   const auto body = std::make_shared<const Body>(MakeBody(mesh, study.density));
-  for (size_t r = 0; r < study.recordings.size(); ++r) {
-    const PredictedRecording& item = study.recordings[r];
+  for (const PredictedRecording& item : study.recordings) {
     const RecordingModel model(study, item, mesh, body, {});
     const PlayedRecording played = Play(model, PlayedNuisances(model));
     if (!played.summary.IsUsable())
@@ -189,7 +199,8 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
     const std::filesystem::path written = own_folder(arguments.recording, item.name);
     MarkAsSimulated(written);
     WriteTetMesh(written / "object.msh", mesh);
-    MarkerRecording recording = AsRecording(item, played, study.noise, r + 1);
+    MarkerRecording recording = AsRecording(
+        item, played, study.noise, SeedOf(study.name, item.name, arguments.seed.value_or(0)));
     recording.reference = written / "object.msh";
     ListNodesOfMesh(mesh, RegionsIn(&recording.object));
     recording.comment =
@@ -199,6 +210,11 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
                study.noise > 0 ? ""
                                : "; its markers have no errors, because the experiment gives no "
                                  "`noise` above 0");
+    if (study.noise > 0 && !item.recording.markers.weights.empty())
+      fmt::print(
+          "All its points have the errors of the experiment's `noise`; those that {} gives "
+          "for single points were not used\n",
+          item.recording.file.string());
   }
   return 0;
 }
@@ -206,6 +222,9 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
 int Simulate(const Arguments& arguments) {
   const Config config = Config::Load(arguments.scene);
   if (IsPredictionStudy(config)) return PlayExperiment(arguments, config);
+  if (arguments.seed)
+    throw InputError(SourcePosition{arguments.scene},
+                     "is a scene, whose `seed` stands in the file: leave out --seed");
   const Scene scene = ReadScene(config);
   if (!arguments.recording.empty() && !scene.scanner)
     throw InputError(SourcePosition{arguments.scene}, "has no `scanner`, which --recording needs");
@@ -248,6 +267,8 @@ void AddSimulate(CLI::App* app, std::function<int()>* command) {
                        "Folder for the trajectory (default: results/<name>_simulation)");
   simulate->add_option("--recording", arguments->recording,
                        "Folder for a recording like any other, which `reconstruct` or `fit` reads");
+  simulate->add_option("--seed", arguments->seed,
+                       "For other measurement errors of an experiment's recordings (default: 0)");
   simulate->callback(
       [command, arguments] { *command = [arguments] { return Simulate(*arguments); }; });
 }

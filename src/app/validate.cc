@@ -35,12 +35,12 @@ void PrintExamined(const ExaminedRecording& examined, const std::string& of = ""
 }
 
 StatedNoise NoiseOf(const PredictionStudy& study, const PredictedRecording& item) {
-  if (item.scans != nullptr) return {study.scan.noise, "scan.noise", study.scan.filter.voxel_size};
+  if (item.ShowsScans()) return {study.scan.noise, "scan.noise", study.scan.filter.voxel_size};
   return {study.noise_is_estimated ? 0 : study.noise, "noise"};
 }
 
 void PrintUse(const PredictedRecording& item) {
-  const size_t fitted = FittedFrames(item).size();
+  const size_t fitted = item.FittedFrames().size();
   fmt::print("frames: {}: {} are fitted, {} are held out\n", item.name, fitted,
              item.frames.size() - fitted);
 }

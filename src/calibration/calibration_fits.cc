@@ -48,8 +48,8 @@ double LargestChange(const std::vector<CalibratedParameter>& parameters,
 // scans, whose points differ from frame to frame.
 double BeginningOfMotion(const RecordingModel& model, const std::vector<int>& frames) {
   constexpr double kHardly = 0.03;  // fraction of the largest displacement that counts as rest
-  if (model.Markers() == nullptr) return 0;
-  const Recording& recording = model.item().recording;
+  if (model.recording().ShowsScans()) return 0;
+  const Recording& recording = model.recording().recording;
   const Eigen::Matrix3Xd& first = recording.markers.positions[frames.front()];
   std::vector<double> moved;  // for each frame: m, largest displacement of a marker
   for (const int frame : frames) {
@@ -63,10 +63,11 @@ double BeginningOfMotion(const RecordingModel& model, const std::vector<int>& fr
       std::find_if(moved.begin(), moved.end(), [&](double distance) { return distance > least; });
   if (moving == moved.begin() || moving == moved.end()) return 0;
   const int last = frames[static_cast<size_t>(moving - moved.begin()) - 1];
-  return std::max(0.0, recording.times[last] - model.item().StartTime());
+  return std::max(0.0, recording.times[last] - model.recording().StartTime());
 }
 
-double Left(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
+// The rms of the whitened residual; infinite where the prediction is not usable.
+double RmsAt(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
   const Prediction prediction = problem.Predict(values, /*with_jacobian=*/false);
   return prediction.usable ? RootMeanSquare(prediction) : kUnlimited;
 }
@@ -109,7 +110,7 @@ class Fitter {
     if (problem_.study().explained_misfit == 0 || problem_.HasScans()) return judged;
     progress_.Begin("fit from the diagnosis", 0);
     judged.parameters = start;
-    judged.rms = Left(problem_, start);
+    judged.rms = RmsAt(problem_, start);
     ++evaluations_;
     budget_.Spend(1, TimeStep());
     if (judged.rms > kLocalMinimumSuspected)
@@ -129,7 +130,7 @@ class Fitter {
     const Eigen::VectorXd& near = beginning.parameters.size() > 0 ? beginning.parameters : start;
     Calibration calibration = Stage("fit", kUnlimited, near);
     // The initial error is that at the caller's start values, not at the end of the first part.
-    calibration.start_rms = Left(problem_, start);
+    calibration.start_rms = RmsAt(problem_, start);
     return calibration;
   }
 
@@ -251,10 +252,11 @@ class Fitter {
 double ShortHorizon(const CalibrationProblem& problem) {
   double longest = 0;
   for (const RecordingModel& model : problem.models()) {
-    const std::vector<int> frames = model.FittedFrames();
+    const std::vector<int> frames = model.recording().FittedFrames();
     if (frames.empty()) continue;
     const double rest = BeginningOfMotion(model, frames);
-    const double whole = model.item().recording.times[frames.back()] - model.item().StartTime();
+    const double whole =
+        model.recording().recording.times[frames.back()] - model.recording().StartTime();
     longest = std::max(longest, rest + kShortHorizon * (whole - rest));
   }
   return longest;
@@ -283,6 +285,14 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
   const Eigen::VectorXd start = problem.Start();
   Calibration calibration =
       fitter.Whole(start, beginning != nullptr ? *beginning : fitter.FirstPart(start));
+  // Where the body hardly deforms over the short horizon, that can lead far away from a good start.
+  if (calibration.start_rms < calibration.rms && !fitter.IsOutOfBudget()) {
+    Calibration direct = fitter.Stage("fit from the start values", kUnlimited, start);
+    if (direct.usable && direct.rms < calibration.rms) {
+      direct.start_rms = calibration.start_rms;
+      calibration = std::move(direct);
+    }
+  }
   if (calibration.usable && calibration.rms <= kLocalMinimumSuspected) return calibration;
   // Equilibria have no period, so that other moduli lead to the same minimum. FindFarStart has
   // tried others for scans.
@@ -299,9 +309,9 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
     if (other == start || fitter.IsOutOfBudget()) break;
     Calibration first = fitter.Beginning(
         fmt::format("fit, moduli from {:g} times their start values", factor), other);
-    const double left = first.estimates.empty() ? kUnlimited : Left(problem, first.parameters);
-    if (left >= least) continue;
-    least = left;
+    const double rms = first.estimates.empty() ? kUnlimited : RmsAt(problem, first.parameters);
+    if (rms >= least) continue;
+    least = rms;
     nearest = std::move(first);
   }
   if (nearest.parameters.size() > 0 && !fitter.IsOutOfBudget()) {

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -46,7 +45,7 @@ Eigen::MatrixXd SumOverPlaces(const std::vector<ModelParameter>& parameters,
 std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
   const size_t lost = model.LostFrames(misfit, kFewestMatched).size();
   if (2 * lost <= misfit.frames.size()) {
-    if (model.Markers() != nullptr || misfit.observed.empty()) return "";
+    if (!model.recording().ShowsScans() || misfit.observed.empty()) return "";
     const Observed& first = misfit.observed.front();
     if (model.Shows(first)) return "";
     return fmt::format(
@@ -87,25 +86,14 @@ std::string WhyWithoutNoise(const std::vector<RecordingModel>& models) {
   constexpr size_t kFewestFrames = 3;  // noise shows in second differences
   size_t most = 0;
   for (const RecordingModel& model : models)
-    if (model.Markers() != nullptr) most = std::max(most, model.FittedFrames().size());
+    if (!model.recording().ShowsScans())
+      most = std::max(most, model.recording().FittedFrames().size());
   if (most == 0) return "no recording of markers is fitted";
   if (most < kFewestFrames) return "fewer than three frames of markers are fitted";
   return "the markers do not move at all, or none is seen in three frames that follow one another";
 }
 
-bool HasTheSameMarkers(const Recording& a, const Recording& b) {
-  return a.markers.names == b.markers.names && a.markers.places == b.markers.places;
-}
-
 }  // namespace
-
-const LinearisedMisfit::Part& LinearisedMisfit::PointsOf(size_t recording) const {
-  const auto found = std::find_if(parts.begin(), parts.end(), [&](const Part& part) {
-    return part.recording == recording && part.IsOfPoints();
-  });
-  CHECK(found != parts.end());
-  return *found;
-}
 
 CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMesh& mesh)
     : study_(study),
@@ -118,7 +106,7 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
   }
   const bool has_scans =
       std::any_of(study.recordings.begin(), study.recordings.end(),
-                  [](const PredictedRecording& item) { return item.scans != nullptr; });
+                  [](const PredictedRecording& item) { return item.ShowsScans(); });
   if (has_scans && patches_.Count() == 0)
     patches_ = DivideSurface(body_->boundary.surface, study.scan.patches);
   double of_markers = 0, of_scans = 0;
@@ -131,9 +119,9 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
         parameters_.push_back(nuisance.prior);
         units_.push_back(nuisance.unit);
       }
-    has_markers = has_markers || item.scans == nullptr;
-    double& largest = item.scans != nullptr ? of_scans : of_markers;
-    largest = std::max(largest, EstimateRecordingNoise(item, models_.back().FittedFrames()));
+    has_markers = has_markers || !item.ShowsScans();
+    double& largest = item.ShowsScans() ? of_scans : of_markers;
+    largest = std::max(largest, EstimateRecordingNoise(item, item.FittedFrames()));
   }
   for (CalibratedParameter& parameter : parameters_)
     if (std::isnan(parameter.prior_mean)) parameter.prior_mean = parameter.start;
@@ -154,8 +142,8 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
 }
 
 MeasurementErrors CalibrationProblem::ErrorsOf(const RecordingModel& model) const {
-  if (model.item().scans != nullptr) return {scan_noise_, study_.scan.shape_deviation};
-  return {noise_, PlaceDeviation(study_, model.item(), noise_)};
+  if (model.recording().ShowsScans()) return {scan_noise_, study_.scan.shape_deviation};
+  return {noise_, PlaceDeviation(study_, model.recording(), noise_)};
 }
 
 PredictionStudy CalibrationProblem::WithEstimatedNoise() const {
@@ -195,13 +183,20 @@ Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
 }
 
 std::optional<size_t> CalibrationProblem::RecordingWithSamePlaces(size_t recording) const {
-  if (models_[recording].Markers() == nullptr || first_nuisance_[recording] >= 0)
+  if (models_[recording].recording().ShowsScans() || first_nuisance_[recording] >= 0)
     return std::nullopt;
   for (size_t r = 0; r < models_.size(); ++r)
-    if (first_nuisance_[r] >= 0 && models_[r].Markers() != nullptr &&
-        HasTheSameMarkers(models_[recording].item().recording, models_[r].item().recording))
+    if (first_nuisance_[r] >= 0 &&
+        SameMarkers(models_[recording].recording(), models_[r].recording()))
       return r;
   return std::nullopt;
+}
+
+Eigen::MatrixXd CalibrationProblem::InOrderOf(size_t recording, size_t source,
+                                              const Eigen::MatrixXd& places) const {
+  const auto same = SameMarkers(models_[recording].recording(), models_[source].recording());
+  CHECK(same);
+  return places(Eigen::all, *same);
 }
 
 std::optional<Eigen::MatrixXd> CalibrationProblem::PlacesFromFitted(
@@ -209,10 +204,12 @@ std::optional<Eigen::MatrixXd> CalibrationProblem::PlacesFromFitted(
   const std::optional<size_t> source = RecordingWithSamePlaces(recording);
   if (!source) return std::nullopt;
   const RecordingModel fitted = ModelAt(*source, values);
-  const Misfit misfit = fitted.Predict(fitted.FittedFrames(), NuisanceOf(*source, values));
+  const Misfit misfit =
+      fitted.Predict(fitted.recording().FittedFrames(), NuisanceOf(*source, values));
   if (!misfit.summary.IsUsable()) return std::nullopt;
-  return CommonError(misfit.residual, misfit.count, misfit.points, ErrorsOf(fitted),
-                     std::vector<char>(misfit.frames.size(), 1), misfit.deformation);
+  return InOrderOf(recording, *source,
+                   CommonError(misfit.residual, misfit.count, misfit.points, ErrorsOf(fitted),
+                               std::vector<char>(misfit.frames.size(), 1), misfit.deformation));
 }
 
 std::vector<MisfitDirection> CalibrationProblem::DirectionsFor(
@@ -244,38 +241,38 @@ std::vector<size_t> CalibrationProblem::FittedRecordings() const {
   return fitted;
 }
 
-Prediction CalibrationProblem::PredictRecording(size_t r, const Eigen::VectorXd& values,
+Prediction CalibrationProblem::PredictRecording(size_t recording, const Eigen::VectorXd& values,
                                                 bool with_jacobian, double horizon,
-                                                const PredictionHints& hints, Misfit* found) const {
-  const RecordingModel model = ModelAt(r, values);
-  std::vector<int> frames = model.FittedFrames();
-  const std::vector<double>& times = model.item().recording.times;
-  const double start = model.item().StartTime();
+                                                const PredictionHints& hints,
+                                                Misfit* misfit) const {
+  const RecordingModel model = ModelAt(recording, values);
+  std::vector<int> frames = model.recording().FittedFrames();
+  const std::vector<double>& times = model.recording().recording.times;
+  const double start = model.recording().StartTime();
   std::erase_if(frames, [&](int frame) { return times[frame] > start + horizon; });
   std::vector<MisfitDirection> directions;
   if (with_jacobian) directions = DirectionsFor(model, {});
-  Misfit& misfit = *found;
-  misfit = model.Predict(frames, NuisanceOf(r, values), directions, hints);
+  *misfit = model.Predict(frames, NuisanceOf(recording, values), directions, hints);
   Prediction part;
-  if (!misfit.summary.IsUsable())
-    part.message = misfit.summary.message;
+  if (!misfit->summary.IsUsable())
+    part.message = misfit->summary.message;
   else if (hints.reach_factor <= 1)
-    part.message = Mismatch(model, misfit);
+    part.message = Mismatch(model, *misfit);
   part.usable = part.message.empty();
   if (!part.usable) {
-    part.message = model.item().name + ": " + part.message;
+    part.message = model.recording().name + ": " + part.message;
     return part;
   }
   const auto columns = [&](const Eigen::MatrixXd& by) {
-    return with_jacobian ? ColumnsOf(r, by, 0) : Eigen::MatrixXd(by.rows(), 0);
+    return with_jacobian ? ColumnsOf(recording, by, 0) : Eigen::MatrixXd(by.rows(), 0);
   };
   const auto whitened = [&](const Eigen::MatrixXd& what) {
-    return Whitened(what, misfit.count, model.PointCount(), ErrorsOf(model), misfit.deformation);
+    return Whitened(what, misfit->count, model.PointCount(), ErrorsOf(model), misfit->deformation);
   };
-  AppendWhitened(whitened(misfit.residual), whitened(columns(misfit.jacobian)),
-                 model.observer().Components() * model.PointCount(), misfit.count, &part);
-  for (size_t k = 0; k < misfit.reactions.size(); ++k) {
-    const ReactionMisfit& reaction = misfit.reactions[k];
+  AppendWhitened(whitened(misfit->residual), whitened(columns(misfit->jacobian)),
+                 model.observer().Components() * model.PointCount(), misfit->count, &part);
+  for (size_t k = 0; k < misfit->reactions.size(); ++k) {
+    const ReactionMisfit& reaction = misfit->reactions[k];
     const auto whitened_force = [&](const Eigen::MatrixXd& what) {
       return Whitened(what, reaction.count, reaction.components,
                       ReadingErrors(model.Reactions()[k]));
@@ -339,10 +336,10 @@ std::optional<CalibrationProblem::ScanDistance> CalibrationProblem::DistanceOfSc
   ScanDistance distance;
   double frames = 0, offered = 0;
   for (const size_t r : FittedRecordings()) {
-    if (models_[r].Markers() != nullptr) continue;
+    if (!models_[r].recording().ShowsScans()) continue;
     ThrowIfInterrupted();
     const RecordingModel model = ModelAt(r, values);
-    const Misfit misfit = model.Predict(model.FittedFrames(), NuisanceOf(r, values), {},
+    const Misfit misfit = model.Predict(model.recording().FittedFrames(), NuisanceOf(r, values), {},
                                         {.near_equilibrium = &memory->equilibria[r]});
     if (!misfit.summary.IsUsable()) return std::nullopt;
     memory->equilibria[r] = misfit.summary.held;
@@ -356,96 +353,6 @@ std::optional<CalibrationProblem::ScanDistance> CalibrationProblem::DistanceOfSc
   if (frames > 0) distance.mean /= frames;
   if (offered > 0) distance.used /= offered;
   return distance;
-}
-
-CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
-    size_t r, const Eigen::VectorXd& values, bool with_jacobian,
-    const std::vector<MisfitDirection>& directions, const PredictionHints& hints) const {
-  const RecordingModel model = ModelAt(r, values);
-  const PredictedRecording& item = model.item();
-  // The clock comes last: the derivative by its delay is minus the speed.
-  std::vector<MisfitDirection> wanted;
-  if (with_jacobian) wanted = DirectionsFor(model, directions);
-  wanted.push_back({MisfitDirection::Kind::kClock});
-  Misfit misfit = model.Predict(item.frames, NuisanceOf(r, values), wanted, hints);
-  LinearisedRecording linearised;
-  if (!misfit.summary.IsUsable()) {
-    linearised.message = item.name + ": " + misfit.summary.message;
-    return linearised;
-  }
-  const auto columns = [&](const Eigen::MatrixXd& by) {
-    return ColumnsOf(r, by.leftCols(by.cols() - 1), static_cast<Eigen::Index>(directions.size()));
-  };
-  LinearisedMisfit::Part part;
-  part.recording = r;
-  part.errors = ErrorsOf(model);
-  const Eigen::Index components = model.observer().Components();
-  part.layout.series = static_cast<int>(components) * model.PointCount();
-  for (const int frame : misfit.frames) {
-    part.layout.times.push_back(item.recording.times[frame]);
-    part.fitted.push_back(item.recording.times[frame] <= item.fit_until);
-  }
-  for (const double count : misfit.count)
-    part.layout.count.insert(part.layout.count.end(), static_cast<size_t>(components), count);
-  part.layout.deformation = std::move(misfit.deformation);
-  part.observed = std::move(misfit.observed);
-  part.held = std::move(misfit.summary.held);
-  part.speed = -misfit.jacobian.rightCols<1>();
-  if (with_jacobian) linearised.jacobian = columns(misfit.jacobian);
-  linearised.residual = std::move(misfit.residual);
-  for (size_t k = 0; k < misfit.reactions.size(); ++k) {
-    const ReactionMisfit& reaction = misfit.reactions[k];
-    LinearisedMisfit::Part& of_force = linearised.parts.emplace_back();
-    of_force.recording = r;
-    of_force.reaction = k;
-    of_force.first_row = linearised.residual.size();
-    of_force.errors = ReadingErrors(model.Reactions()[k]);
-    of_force.layout = {reaction.components, part.layout.times, reaction.count, {}};
-    of_force.fitted = part.fitted;
-    of_force.speed = -reaction.jacobian.rightCols<1>();
-    of_force.sign = reaction.sign;
-    linearised.residual.conservativeResize(of_force.first_row + reaction.residual.size());
-    linearised.residual.tail(reaction.residual.size()) = reaction.residual;
-    if (with_jacobian) AppendRows(columns(reaction.jacobian), &linearised.jacobian);
-  }
-  linearised.parts.insert(linearised.parts.begin(), std::move(part));
-  return linearised;
-}
-
-LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bool with_jacobian,
-                                               const std::vector<MisfitDirection>& directions,
-                                               const LinearisedMisfit* same,
-                                               const LinearisedMisfit* near) const {
-  ThrowIfInterrupted();
-  const std::vector<size_t> fitted = FittedRecordings();
-  std::vector<LinearisedRecording> recordings(fitted.size());
-  ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t at) {
-    const size_t k = static_cast<size_t>(at);
-    PredictionHints hints;
-    if (same != nullptr) hints.observed = &same->PointsOf(fitted[k]).observed;
-    if (near != nullptr && near->usable) hints.near_equilibrium = &near->PointsOf(fitted[k]).held;
-    recordings[k] = LineariseRecording(fitted[k], values, with_jacobian, directions, hints);
-  });
-  LinearisedMisfit all;
-  Eigen::Index rows = 0;
-  for (LinearisedRecording& recording : recordings) {
-    all.message = recording.message;
-    if (!all.message.empty()) return all;
-    for (LinearisedMisfit::Part& part : recording.parts) part.first_row += rows;
-    rows += recording.residual.size();
-  }
-  all.residual.resize(rows);
-  if (with_jacobian)
-    all.jacobian.resize(rows, static_cast<Eigen::Index>(parameters_.size() + directions.size()));
-  for (LinearisedRecording& recording : recordings) {
-    const Eigen::Index first = recording.parts.front().first_row;
-    const Eigen::Index count = recording.residual.size();
-    all.residual.segment(first, count) = recording.residual;
-    if (with_jacobian) all.jacobian.middleRows(first, count) = recording.jacobian;
-    std::move(recording.parts.begin(), recording.parts.end(), std::back_inserter(all.parts));
-  }
-  all.usable = true;
-  return all;
 }
 
 }  // namespace lacuna

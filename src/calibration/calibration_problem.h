@@ -8,6 +8,7 @@
 #define LACUNA_CALIBRATION_CALIBRATION_PROBLEM_H_
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,8 +17,8 @@
 #include "analysis/measurement_errors.h"
 #include "analysis/series_noise.h"
 #include "fit/calibration.h"
-#include "prediction/predicted_motion.h"
 #include "prediction/prediction_study.h"
+#include "prediction/recording_model.h"
 
 namespace lacuna {
 
@@ -49,6 +50,17 @@ struct LinearisedMisfit {
   Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian;  // columns: the problem's parameters, then the directions asked for
   std::vector<Part> parts;
+};
+
+struct LineariseOptions {
+  bool with_jacobian = false;
+  // Further columns of the Jacobian, the same for each recording.
+  std::vector<MisfitDirection> directions = {};
+  // Where the scanned points get their correspondences from; null: from this prediction.
+  const LinearisedMisfit* correspondences = nullptr;
+  // The misfit of a similar model on the same mesh, from whose equilibria the search for those here
+  // starts; null or not usable: from the rest shape.
+  const LinearisedMisfit* near = nullptr;
 };
 
 // A fit whose rms residual exceeds this many σ may have ended in a local minimum; other starts are
@@ -98,10 +110,13 @@ class CalibrationProblem {
   // of another one are fitted to its first tenth, with the model at `values`.
   Eigen::VectorXd NuisanceOf(size_t recording, const Eigen::VectorXd& values) const;
   // The fitted recording from which the errors of the marker places of a recording that is not
-  // fitted are taken: the first one with markers of the same names at the same places. The markers
-  // sit on the object, so that their place errors are the same in both. Empty where there is none,
-  // and for scans.
+  // fitted are taken: the first one with markers of the same names at the same places, in any
+  // order. The markers sit on the object, so that their place errors are the same in both. Empty
+  // where there is none, and for scans.
   std::optional<size_t> RecordingWithSamePlaces(size_t recording) const;
+  // The errors of the marker places of `source`, RecordingWithSamePlaces(), 3 × markers, in the
+  // order in which `recording` has these markers.
+  Eigen::MatrixXd InOrderOf(size_t recording, size_t source, const Eigen::MatrixXd& places) const;
 
   // What the predictions of a fit reuse from earlier ones.
   struct FitMemory {
@@ -136,14 +151,9 @@ class CalibrationProblem {
   std::optional<ScanDistance> DistanceOfScans(const Eigen::VectorXd& values,
                                               FitMemory* memory) const;
 
-  // Predicts all frames of the fitted recordings. `directions`: further columns of the Jacobian,
-  // the same for each recording. `same`, if given, provides the correspondences. `near`: of a
-  // similar model on the same mesh; the search for the equilibria starts from those there. Throws
-  // Interrupted.
-  LinearisedMisfit Linearise(const Eigen::VectorXd& values, bool with_jacobian,
-                             const std::vector<MisfitDirection>& directions = {},
-                             const LinearisedMisfit* same = nullptr,
-                             const LinearisedMisfit* near = nullptr) const;
+  // Predicts all frames of the fitted recordings. Throws Interrupted.
+  LinearisedMisfit Linearise(const Eigen::VectorXd& values,
+                             const LineariseOptions& options = {}) const;
 
  private:
   // The errors of the marker places, 3 × markers, m, estimated from RecordingWithSamePlaces().
@@ -169,8 +179,7 @@ class CalibrationProblem {
     Eigen::MatrixXd jacobian;
   };
   LinearisedRecording LineariseRecording(size_t recording, const Eigen::VectorXd& values,
-                                         bool with_jacobian,
-                                         const std::vector<MisfitDirection>& directions,
+                                         const LineariseOptions& options,
                                          const PredictionHints& hints) const;
 
   const PredictionStudy& study_;

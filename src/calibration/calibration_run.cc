@@ -12,6 +12,7 @@
 #include "calibration/prior_conflicts.h"
 #include "calibration/reaction_report.h"
 #include "core/error.h"
+#include "experiment/reference_body_stage.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
 #include "prediction/recording_noise.h"
@@ -23,8 +24,7 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage, or its files.
-constexpr int kMeshVersion = 3;
-constexpr int kCalibrationVersion = 31;
+constexpr int kCalibrationVersion = 32;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
@@ -52,19 +52,38 @@ std::vector<HeldParameter> HeldIn(const PredictionStudy& study) {
   return held;
 }
 
+// Says for which recordings the simulation stops before the last frame, so that their errors cover
+// only a part of the frames.
+std::vector<std::string> NotesOnStops(const CalibrationProblem& problem,
+                                      const std::vector<RecordingMisfit>& misfits) {
+  std::vector<std::string> notes;
+  for (size_t r = 0; r < misfits.size(); ++r) {
+    const Misfit& misfit = misfits[r].misfit;
+    if (misfit.summary.IsUsable()) continue;
+    const PredictedRecording& item = problem.models()[r].recording();
+    notes.push_back(fmt::format(
+        "{}: the simulation stops before the last frame, so that all errors are those of {} of its "
+        "{} frames{}: {}",
+        misfits[r].name, misfit.frames.size(), item.frames.size(),
+        misfit.frames.empty()
+            ? ""
+            : fmt::format(", up to {:.4g} s", item.recording.times[misfit.frames.back()]),
+        misfit.summary.message));
+  }
+  return notes;
+}
+
 struct CalibrationStage {
   CalibrationRecord record;
   CsvTable misfit, reactions, torques;
   std::optional<OtherMesh> other_mesh;  // with which the error of the mesh was estimated
 };
 
-CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& reference,
-                            Progress* progress, FitStore* kept) {
-  const AdaptedFit fit = FitWithAdaptiveTimeStep(reference.mesh, &study, progress, kept);
+// The outcome of the fit itself.
+CalibrationRecord DescribeFit(const AdaptedFit& fit, const PredictionStudy& study,
+                              const CalibrationProblem& problem) {
   const Calibration& calibration = fit.calibration;
-  const CalibrationProblem problem(study, reference.mesh);
-  CalibrationStage stage;
-  CalibrationRecord& record = stage.record;
+  CalibrationRecord record;
   // A relative path, so that the runs can be moved together with the experiments.
   record.experiment =
       std::filesystem::absolute(study.file)
@@ -88,45 +107,69 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
         {prior.name, problem.UnitOf(k), prior.log_scale, calibration.estimates[k], std::nullopt});
   }
   record.held = HeldIn(study);
-  if (calibration.estimates.size() != problem.parameters().size()) return stage;  // no prediction
-  progress->Begin("predict", 0);
-  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, calibration.parameters);
-  for (size_t r = 0; r < misfits.size(); ++r) {
-    const PredictedRecording& item = study.recordings[r];
-    record.recordings.push_back({misfits[r].name, item.fitted,
-                                 EstimateRecordingNoise(item, item.frames), misfits[r].in_fit,
-                                 misfits[r].held_out, std::nullopt});
-    record.recordings.back().reactions = misfits[r].reactions;
-    const auto& own = problem.models()[r].nuisances();
-    for (size_t k = 0; k < own.size() && !item.fitted; ++k)
-      record.recordings.back().own.push_back(
-          {own[k].prior.name, own[k].unit, misfits[r].nuisance[static_cast<Eigen::Index>(k)]});
-    if (item.scans != nullptr)
-      record.recordings.back().scan =
-          DescribeScan(misfits[r], problem.models()[r].observer().Places(), problem.scan_noise());
-    else
-      record.recordings.back().marker_names = item.recording.markers.names;
+  return record;
+}
+
+FittedRecording DescribeRecording(const RecordingModel& model, const RecordingMisfit& misfit,
+                                  double scan_noise) {
+  const PredictedRecording& item = model.recording();
+  FittedRecording recording{
+      misfit.name,   item.fitted,     EstimateRecordingNoise(item, item.frames),
+      misfit.in_fit, misfit.held_out, std::nullopt};
+  recording.reactions = misfit.reactions;
+  const auto& own = model.nuisances();
+  for (size_t k = 0; k < own.size() && !item.fitted; ++k)
+    recording.own.push_back(
+        {own[k].prior.name, own[k].unit, misfit.nuisance[static_cast<Eigen::Index>(k)]});
+  if (item.ShowsScans())
+    recording.scan = DescribeScan(misfit, model.observer().Places(), scan_noise);
+  else
+    recording.marker_names = item.recording.markers.names;
+  return recording;
+}
+
+// Shifts and widens the intervals of the parameters by the errors of the model that the fit does
+// not estimate.
+void CountKnownErrors(const CalibrationProblem& problem, const KnownErrors& errors,
+                      CalibrationRecord* record) {
+  for (size_t k = 0; k < record->parameters.size(); ++k) {
+    const Eigen::Index at = static_cast<Eigen::Index>(k);
+    FittedParameter& parameter = record->parameters[k];
+    if (errors.at_mesh_limit.size() > 0) parameter.with_finest_mesh = errors.at_mesh_limit[at];
+    parameter.at_limit = errors.at_limit[at];
+    CountModelErrors(problem.parameters()[k], *parameter.at_limit, errors.deviation[at],
+                     &parameter.estimate);
   }
+  record->notes.insert(record->notes.end(), errors.notes.begin(), errors.notes.end());
+}
+
+CalibrationStage FitAndDescribe(PredictionStudy study, const ReferenceBody& reference,
+                                Progress* progress, FitStore* kept) {
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(reference.mesh, &study, progress, kept);
+  const Eigen::VectorXd& values = fit.calibration.parameters;
+  const CalibrationProblem problem(study, reference.mesh);
+  CalibrationStage stage;
+  CalibrationRecord& record = stage.record;
+  record = DescribeFit(fit, study, problem);
+  if (record.parameters.size() != problem.parameters().size()) return stage;  // no prediction
+  progress->Begin("predict", 0);
+  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, values);
+  for (size_t r = 0; r < misfits.size(); ++r)
+    record.recordings.push_back(
+        DescribeRecording(problem.models()[r], misfits[r], problem.scan_noise()));
   record.prior_conflicts = FindPriorConflicts(problem, misfits);
+  const std::vector<std::string> stops = NotesOnStops(problem, misfits);
+  record.notes.insert(record.notes.end(), stops.begin(), stops.end());
   stage.misfit = MisfitTable(problem, misfits);
   stage.reactions = ReactionTable(problem, misfits, /*torques=*/false);
   stage.torques = ReactionTable(problem, misfits, /*torques=*/true);
-  const std::vector<std::optional<DataShares>> shares =
-      SharesOfData(problem, calibration.parameters);
+  const std::vector<std::optional<DataShares>> shares = SharesOfData(problem, values);
   for (size_t k = 0; k < shares.size(); ++k) record.parameters[k].shares = shares[k];
   progress->End();
-  if (calibration.rms <= kFarFromTruth) {
+  if (record.rms <= kFarFromTruth) {
     progress->Begin("errors of the model", 0);
-    const KnownErrors errors = FindKnownErrors(problem, calibration.parameters);
-    for (size_t k = 0; k < record.parameters.size(); ++k) {
-      const Eigen::Index at = static_cast<Eigen::Index>(k);
-      FittedParameter& parameter = record.parameters[k];
-      if (errors.at_mesh_limit.size() > 0) parameter.with_finest_mesh = errors.at_mesh_limit[at];
-      parameter.at_limit = errors.at_limit[at];
-      CountModelErrors(problem.parameters()[k], *parameter.at_limit, errors.deviation[at],
-                       &parameter.estimate);
-    }
-    record.notes.insert(record.notes.end(), errors.notes.begin(), errors.notes.end());
+    const KnownErrors errors = FindKnownErrors(problem, values);
+    CountKnownErrors(problem, errors, &record);
     stage.other_mesh = errors.other_mesh;
     progress->End();
   }
@@ -161,16 +204,8 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
     behind_mesh["scan"] = study.configuration.value("scan", nlohmann::json::object());
     behind_mesh["first_frame"] = study.recordings.front().frames.front();
   }
-  const auto reference = RunStage<ReferenceBody>(
-      &run, {"mesh", kMeshVersion, behind_mesh, inputs}, progress,
-      [&] {
-        progress->Begin("mesh", 0);
-        ReferenceBody body = MakeReferenceBody(study);
-        progress->End(
-            fmt::format("{} nodes, {} tetrahedra", body.mesh.NodeCount(), body.mesh.TetCount()));
-        return body;
-      },
-      SaveReferenceBody, ReadReferenceBody);
+  const ReferenceBody reference = RunReferenceBodyStage(&run, behind_mesh, inputs, progress,
+                                                        [&] { return MakeReferenceBody(study); });
 
   std::map<std::string, std::string> behind = inputs;
   behind["mesh"] = run.ResultHash("mesh");
@@ -179,7 +214,7 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
                                              {"behind", behind}});
   CalibrationStage stage = RunStage<CalibrationStage>(
       &run, {"calibration", kCalibrationVersion, study.configuration, behind}, progress,
-      [&] { return Calibrated(study, reference, progress, &kept); },
+      [&] { return FitAndDescribe(study, reference, progress, &kept); },
       [](const CalibrationStage& value, const std::filesystem::path& folder) {
         WriteCalibrationFile(value.record, folder / "calibration.json");
         if (!value.misfit.empty()) SaveCsv(value.misfit, folder / "misfit.csv");

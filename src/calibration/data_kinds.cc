@@ -6,7 +6,7 @@ namespace lacuna {
 namespace {
 
 DataKind KindOfPoints(const RecordingModel& model) {
-  return model.Markers() != nullptr ? &ByDataKind::markers : &ByDataKind::scans;
+  return model.recording().ShowsScans() ? &ByDataKind::scans : &ByDataKind::markers;
 }
 
 }  // namespace
@@ -14,7 +14,7 @@ DataKind KindOfPoints(const RecordingModel& model) {
 bool HasSeveralKinds(const CalibrationProblem& problem) {
   ByDataKind recordings;  // with data of each kind
   for (const RecordingModel& model : problem.models()) {
-    if (!model.item().fitted) continue;
+    if (!model.recording().fitted) continue;
     recordings.*KindOfPoints(model) += 1;
     if (!model.Reactions().empty()) recordings.forces += 1;
   }

@@ -8,11 +8,11 @@ namespace lacuna {
 std::vector<std::optional<DataShares>> SharesOfData(const CalibrationProblem& problem,
                                                     const Eigen::VectorXd& values) {
   if (!HasSeveralKinds(problem)) return {};
-  const LinearisedMisfit misfit = problem.Linearise(values, true);
+  const LinearisedMisfit misfit = problem.Linearise(values, {.with_jacobian = true});
   if (!misfit.usable) return {};
   // The parts are whitened independently of one another, so that the squares of each are its own.
   const Eigen::MatrixXd squares =
-      WhitenedRows(misfit.jacobian, misfit, 0, /*fitted_only=*/true).cwiseAbs2();
+      WhitenedRows(misfit.jacobian, misfit, {.fitted_only = true}).cwiseAbs2();
   const Eigen::RowVectorXd all = squares.colwise().sum();
   const std::vector<DataKind> kinds = KindsOfParts(misfit, problem);
   std::vector<std::optional<DataShares>> shares(static_cast<size_t>(all.size()));

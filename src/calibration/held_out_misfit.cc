@@ -42,7 +42,7 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
 // The misfit of a recording with markers as `known` has it; nothing if it is not there.
 std::optional<Misfit> KnownMisfit(const RecordingModel& model, size_t recording,
                                   const LinearisedMisfit* known) {
-  if (known == nullptr || model.Markers() == nullptr) return std::nullopt;
+  if (known == nullptr || model.recording().ShowsScans()) return std::nullopt;
   std::optional<Misfit> found;
   for (const LinearisedMisfit::Part& part : known->parts) {
     if (part.recording != recording) continue;
@@ -56,7 +56,7 @@ std::optional<Misfit> KnownMisfit(const RecordingModel& model, size_t recording,
     }
     const Eigen::Index components = model.observer().Components();
     Misfit misfit;
-    misfit.frames = model.item().frames;
+    misfit.frames = model.recording().frames;
     misfit.points = model.PointCount();
     misfit.residual = known->residual.segment(part.first_row, part.layout.Rows());
     for (size_t k = 0; k < part.layout.count.size(); k += static_cast<size_t>(components))
@@ -74,7 +74,7 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
                          const std::optional<Eigen::MatrixXd>& places,
                          const LinearisedMisfit* known) {
   const RecordingModel model = problem.ModelAt(r, values);
-  const PredictedRecording& item = model.item();
+  const PredictedRecording& item = model.recording();
   const MeasurementErrors errors = problem.ErrorsOf(model);
   RecordingMisfit recording;
   recording.name = item.name;
@@ -90,7 +90,7 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
   for (const int frame : recording.misfit.frames) {
     const double time = item.recording.times[frame];
     times.push_back(time);
-    recording.fitted.push_back(item.fitted && time <= item.fit_until);
+    recording.fitted.push_back(item.IsFitted(frame));
     tells_places.push_back(item.fitted ? recording.fitted.back() : time <= item.StartTime());
   }
   recording.has_own_places = !places;
@@ -123,7 +123,7 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
       std::optional<Eigen::MatrixXd> places;
       if (const std::optional<size_t> source = problem.RecordingWithSamePlaces(r);
           source && all[*source].misfit.summary.IsUsable())
-        places = all[*source].place_offset;
+        places = problem.InOrderOf(r, *source, all[*source].place_offset);
       all[r] = MisfitOf(problem, values, r, places, known);
     });
   }

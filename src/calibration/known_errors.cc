@@ -18,7 +18,7 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
   errors.at_limit = values;
   errors.deviation = Eigen::VectorXd::Zero(values.size());
   const std::vector<CalibratedParameter>& parameters = problem.parameters();
-  const LinearisedMisfit misfit = problem.Linearise(values, true);
+  const LinearisedMisfit misfit = problem.Linearise(values, {.with_jacobian = true});
   if (!misfit.usable) {
     errors.notes.push_back(
         "the intervals do not contain the errors of the mesh, of the time step and of the object's "
@@ -52,6 +52,10 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
     errors.at_mesh_limit = MovedBy(parameters, values, to_limit);
     add(mesh->DeviationOfLimit() * change);
     errors.other_mesh = std::move(mesh);
+  } else {
+    errors.notes.emplace_back(
+        "the intervals do not contain the error of the mesh: no other mesh could be made, or the "
+        "motion could not be predicted on it");
   }
   if (step) {
     const Eigen::VectorXd change = response.To(step->to_limit);

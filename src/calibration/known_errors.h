@@ -35,7 +35,6 @@ struct KnownErrors {
   // the dimensions (PredictionStudy::size_deviation).
   Eigen::VectorXd deviation;
   // The errors that could not be computed, so that `at_limit` and `deviation` do not contain them.
-  // Where only those of the mesh could not be, `at_mesh_limit` is empty and there is no note.
   std::vector<std::string> notes;
 };
 

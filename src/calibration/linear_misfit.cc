@@ -35,14 +35,14 @@ Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
 }
 
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
-                             double correlation_time, bool fitted_only) {
+                             const WhiteningOptions& options) {
   Eigen::MatrixXd white(rows.rows(), rows.cols());
   for (const LinearisedMisfit::Part& part : misfit.parts) {
     const Eigen::Index count = part.layout.Rows();
     white.middleRows(part.first_row, count) =
         Whitened(rows.middleRows(part.first_row, count), part.layout,
-                 {part.errors.noise, correlation_time, part.errors.common},
-                 fitted_only ? part.fitted : std::vector<char>{});
+                 {part.errors.noise, options.correlation_time, part.errors.common},
+                 options.fitted_only ? part.fitted : std::vector<char>{});
   }
   return white;
 }
@@ -66,8 +66,9 @@ NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
     }
     return mean;
   };
-  level.correlation_time = CorrelationTime(pooled(WhitenedRows(left, misfit, 0, false)));
-  const Eigen::VectorXd white = WhitenedRows(left, misfit, level.correlation_time, false);
+  level.correlation_time = CorrelationTime(pooled(WhitenedRows(left, misfit)));
+  const Eigen::VectorXd white =
+      WhitenedRows(left, misfit, {.correlation_time = level.correlation_time});
   const double freedom =
       static_cast<double>(std::max<Eigen::Index>(1, ObservedRows(misfit) - parameters));
   level.variance = std::max(least, white.squaredNorm() / freedom) * pooled(white).long_run;
@@ -86,7 +87,7 @@ Eigen::Index ObservedRows(const LinearisedMisfit& misfit, bool fitted_only) {
 double RmsOverSigma(const Eigen::VectorXd& residual, const LinearisedMisfit& misfit,
                     bool fitted_only) {
   const Eigen::Index observed = std::max<Eigen::Index>(1, ObservedRows(misfit, fitted_only));
-  return std::sqrt(WhitenedRows(residual, misfit, 0, fitted_only).squaredNorm() /
+  return std::sqrt(WhitenedRows(residual, misfit, {.fitted_only = fitted_only}).squaredNorm() /
                    static_cast<double>(observed));
 }
 

@@ -23,10 +23,14 @@ std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& par
 Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
                         const Eigen::VectorXd& values, const Eigen::VectorXd& change);
 
+struct WhiteningOptions {
+  double correlation_time = 0;  // s, of the noise; 0: white
+  bool fitted_only = false;     // whether rows of frames that were not fitted become 0
+};
+
 // Rows of a linearised misfit, whitened with the measurement errors of their recording.
-// `fitted_only`: rows of frames that were not fitted become 0.
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
-                             double correlation_time, bool fitted_only);
+                             const WhiteningOptions& options = {});
 
 // The noise level with which hypotheses are compared.
 struct NoiseLevel {

@@ -153,7 +153,7 @@ class ChangeSearch {
         values_(values),
         misfit_(misfit),
         own_(own),
-        by_(WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit, 0, false)),
+        by_(WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit)),
         prior_(PriorOfChange(problem, values)),
         model_(Eigen::VectorXd::Zero(by_.rows()), by_, prior_.priors) {}
 
@@ -202,7 +202,7 @@ class ChangeSearch {
   Tried At(const CalibrationProblem& other, const Eigen::VectorXd& change,
            LinearisedMisfit* latest) const {
     LinearisedMisfit here =
-        other.Linearise(MovedBy(parameters_, values_, change), false, {}, nullptr, latest);
+        other.Linearise(MovedBy(parameters_, values_, change), {.near = latest});
     Tried tried = Compared(here.residual);
     if (here.usable) *latest = std::move(here);
     return tried;
@@ -212,7 +212,7 @@ class ChangeSearch {
     Tried tried{residual, {}};
     if (tried.residual.size() == misfit_.residual.size() && own_.size() == tried.residual.size() &&
         tried.residual != own_)
-      tried.difference = WhitenedRows(tried.residual - own_, misfit_, 0, false);
+      tried.difference = WhitenedRows(tried.residual - own_, misfit_);
     return tried;
   }
 
@@ -242,7 +242,7 @@ std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
   const auto other = WithOtherElements(study, own, ratio);
   if (!other) return std::nullopt;
   OtherMesh mesh{other->ratio, Eigen::VectorXd::Zero(values.size()), {}, {}};
-  mesh.own = CalibrationProblem(study, own).Linearise(values, false, {}, nullptr, &misfit).residual;
+  mesh.own = CalibrationProblem(study, own).Linearise(values, {.near = &misfit}).residual;
   const ChangeSearch search(problem, values, misfit, mesh.own);
   bool is_simulated = false;
   if (known != nullptr) {
@@ -295,7 +295,7 @@ Eigen::VectorXd ResidualAtRatio(const CalibrationProblem& problem, const Eigen::
   const auto other = WithOtherElements(study, problem.body()->mesh, ratio);
   if (!other) return {};
   const Eigen::VectorXd change = known.ToRatio(other->ratio) * known.change;
-  return other->problem->Linearise(MovedBy(problem.parameters(), values, change), false).residual;
+  return other->problem->Linearise(MovedBy(problem.parameters(), values, change)).residual;
 }
 
 }  // namespace lacuna

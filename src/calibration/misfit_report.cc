@@ -6,12 +6,13 @@ namespace lacuna {
 
 CsvTable MisfitTable(const CalibrationProblem& problem,
                      const std::vector<RecordingMisfit>& misfits) {
-  std::vector<std::vector<double>> columns(11);
+  std::vector<std::vector<double>> columns(13);
   for (size_t r = 0; r < misfits.size(); ++r) {
     const RecordingMisfit& recording = misfits[r];
     const RecordingModel& model = problem.models()[r];
     const Misfit& misfit = recording.misfit;
     const Eigen::VectorXd residual = misfit.ResidualWithout(recording.place_offset);
+    const double noise = problem.ErrorsOf(model).noise;
     for (size_t f = 0; f < misfit.frames.size(); ++f) {
       const int frame = misfit.frames[f];
       const Observed& observed = misfit.observed[f];
@@ -19,13 +20,19 @@ CsvTable MisfitTable(const CalibrationProblem& problem,
         const Eigen::Index at = static_cast<Eigen::Index>(f) * misfit.points + m;
         const Eigen::Vector3d measured = observed.measured.col(m);
         Eigen::Vector3d difference = Eigen::Vector3d::Constant(kNotMeasured);
-        if (misfit.count[at] > 0 && misfit.Components() == 3)
-          difference = residual.segment<3>(3 * at);
-        if (misfit.count[at] > 0 && misfit.Components() == 1)
-          difference = residual[at] * observed.normal.col(m);
+        double along_normal = kNotMeasured, sigma = kNotMeasured;
+        if (misfit.count[at] > 0) {
+          sigma = noise / std::sqrt(misfit.count[at]);
+          if (misfit.Components() == 3) {
+            difference = residual.segment<3>(3 * at);
+          } else {
+            along_normal = residual[at];
+            difference = along_normal * observed.normal.col(m);
+          }
+        }
         const double row[] = {static_cast<double>(r),
                               static_cast<double>(frame),
-                              model.item().recording.times[frame],
+                              model.recording().recording.times[frame],
                               static_cast<double>(m),
                               static_cast<double>(recording.fitted[f]),
                               measured[0],
@@ -33,14 +40,17 @@ CsvTable MisfitTable(const CalibrationProblem& problem,
                               measured[2],
                               difference[0],
                               difference[1],
-                              difference[2]};
+                              difference[2],
+                              along_normal,
+                              sigma};
         for (size_t k = 0; k < columns.size(); ++k) columns[k].push_back(row[k]);
       }
     }
   }
-  const char* names[] = {"recording",      "frame",          "time_s",        "marker",
-                         "fitted",         "measured_x_m",   "measured_y_m",  "measured_z_m",
-                         "difference_x_m", "difference_y_m", "difference_z_m"};
+  const char* names[] = {"recording",      "frame",          "time_s",         "marker",
+                         "fitted",         "measured_x_m",   "measured_y_m",   "measured_z_m",
+                         "difference_x_m", "difference_y_m", "difference_z_m", "along_normal_m",
+                         "sigma_m"};
   CsvTable table;
   for (size_t k = 0; k < columns.size(); ++k)
     table.push_back(

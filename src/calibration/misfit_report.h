@@ -14,8 +14,11 @@ namespace lacuna {
 
 // The table misfit.csv: for each point of each frame of each recording, the measured place and the
 // difference predicted − measured, m. For a patch of a surface the measured place is the mean of
-// its scanned points, and the difference is the residual times the surface normal. The difference
-// is NaN where the point was not observed.
+// its scanned points, and the difference is the residual along the surface normal, which is a
+// column of its own, times that normal. The last column is the noise σ of the point in that frame,
+// m: of each coordinate, or of a patch along its normal; it is smaller for a point of larger weight
+// and for a patch of more scanned points. Difference and σ are NaN where the point was not
+// observed.
 CsvTable MisfitTable(const CalibrationProblem& problem,
                      const std::vector<RecordingMisfit>& misfits);
 

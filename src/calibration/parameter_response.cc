@@ -20,11 +20,12 @@ ParameterResponse::ParameterResponse(const CalibrationProblem& problem,
                                      bool fitted_only)
     : misfit_(misfit),
       fitted_only_(fitted_only),
-      by_(WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit, 0, fitted_only)),
+      by_(WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit,
+                       {.fitted_only = fitted_only})),
       model_(Eigen::VectorXd::Zero(by_.rows()), by_, PriorsOfResponse(problem, values)) {}
 
 Eigen::MatrixXd ParameterResponse::To(const Eigen::MatrixXd& changes) const {
-  const Eigen::MatrixXd whitened = WhitenedRows(changes, misfit_, 0, fitted_only_);
+  const Eigen::MatrixXd whitened = WhitenedRows(changes, misfit_, {.fitted_only = fitted_only_});
   Eigen::MatrixXd response(by_.cols(), changes.cols());
   for (Eigen::Index k = 0; k < changes.cols(); ++k)
     response.col(k) = model_.WithResidual(whitened.col(k), by_).FitAll(1).change;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/whiteness.h"
 #include "geometry/nearest.h"
 
 namespace lacuna {
@@ -10,12 +11,27 @@ namespace {
 
 // The largest number of markers of a recording that are listed one by one.
 constexpr size_t kMostListed = 6;
-// An estimate that is more standard deviations of its prior away from the prior's mean is a
+// A single number that is more standard deviations of its prior away from the prior's mean is a
 // conflict.
 constexpr double kConflict = 3;
 // A scan is reported where the share of its points that were compared is less than this fraction of
 // the share in the best frame.
 constexpr double kFewestCompared = 0.85;
+
+// The length, in standard deviations of each component, beyond which one of `points` offsets with
+// so many components is a conflict: the x with P(χ²_components > x²) = P(|N| > 3)/points, where N
+// is standard normal. Offsets that obey their prior then give a conflict anywhere among the points
+// as rarely as a single number that exceeds kConflict: in 0.27 % of all cases.
+double LongestOffset(int components, Eigen::Index points) {
+  const double probability = ChiSquareTail(kConflict * kConflict, 1) /
+                             static_cast<double>(std::max<Eigen::Index>(1, points));
+  double shorter = 0, longer = 40;  // of no offset but one in 10^300
+  for (int halving = 0; halving < 60; ++halving) {
+    const double middle = 0.5 * (shorter + longer);
+    (ChiSquareTail(middle * middle, components) > probability ? shorter : longer) = middle;
+  }
+  return longer;
+}
 
 void AddNuisanceConflicts(const RecordingModel& model, const RecordingMisfit& misfit,
                           std::vector<PriorConflict>* conflicts) {
@@ -34,9 +50,10 @@ void AddMarkerConflicts(const RecordingMisfit& misfit, const Recording& recordin
                         std::vector<PriorConflict>* conflicts) {
   if (!misfit.has_own_places) return;
   const Eigen::RowVectorXd distance = misfit.place_offset.colwise().norm();
+  const double longest = LongestOffset(3, distance.size()) * deviation;
   std::vector<int> conflicting;
   for (int m = 0; m < distance.size(); ++m)
-    if (distance[m] > kConflict * deviation) conflicting.push_back(m);
+    if (distance[m] > longest) conflicting.push_back(m);
   std::stable_sort(conflicting.begin(), conflicting.end(),
                    [&](int a, int b) { return distance[a] > distance[b]; });
   for (size_t k = 0; k < conflicting.size() && k < kMostListed; ++k) {
@@ -68,8 +85,8 @@ void AddReferenceShapeConflict(const PredictionStudy& study, const PredictedReco
 
 void AddScanConflicts(const ScanSettings& scan, const RecordingMisfit& misfit,
                       const RecordingModel& model, std::vector<PriorConflict>* conflicts) {
-  const auto conflicting =
-      (misfit.place_offset.array().abs() > kConflict * scan.shape_deviation).count();
+  const double longest = LongestOffset(1, misfit.place_offset.size()) * scan.shape_deviation;
+  const auto conflicting = (misfit.place_offset.array().abs() > longest).count();
   if (conflicting > 0)
     conflicts->emplace_back(PatchConflict{
         misfit.name, static_cast<int>(conflicting), static_cast<int>(misfit.place_offset.cols()),
@@ -78,7 +95,7 @@ void AddScanConflicts(const ScanSettings& scan, const RecordingMisfit& misfit,
   if (!lost.empty())
     conflicts->emplace_back(UnmatchedScans{
         misfit.name, static_cast<int>(lost.size()), static_cast<int>(misfit.misfit.frames.size()),
-        model.item().recording.times[lost.front()], kFewestCompared});
+        model.recording().recording.times[lost.front()], kFewestCompared});
 }
 
 }  // namespace
@@ -91,7 +108,7 @@ std::vector<PriorConflict> FindPriorConflicts(const CalibrationProblem& problem,
     const RecordingModel& model = problem.models()[r];
     const PredictedRecording& item = study.recordings[r];
     AddNuisanceConflicts(model, misfits[r], &conflicts);
-    if (item.scans != nullptr) {
+    if (item.ShowsScans()) {
       AddScanConflicts(study.scan, misfits[r], model, &conflicts);
     } else {
       AddMarkerConflicts(misfits[r], item.recording, PlaceDeviation(study, item, problem.noise()),

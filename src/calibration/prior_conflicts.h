@@ -10,8 +10,10 @@
 
 namespace lacuna {
 
-// The estimates that lie more than 3 standard deviations of their prior away from its mean: places
-// of markers, offsets of scanned patches, the recordings' clocks and grips; and scans that are too
+// The estimates that lie too far from the mean of their prior: the recordings' clocks and grips,
+// beyond 3 standard deviations; places of markers and offsets of scanned patches, beyond the
+// distance that any of a recording's offsets exceeds with the same probability of 0.27 % if the
+// prior holds (of 8 markers 4.3 standard deviations, of 150 patches 4.3); and scans that are too
 // far from the prediction to be compared. In the order of the recordings. `misfits` are those of
 // the fit (MisfitsOf), one per recording.
 std::vector<PriorConflict> FindPriorConflicts(const CalibrationProblem& problem,

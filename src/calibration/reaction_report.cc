@@ -54,7 +54,7 @@ CsvTable ReactionTable(const CalibrationProblem& problem,
   for (size_t r = 0; r < misfits.size(); ++r) {
     const RecordingModel& model = problem.models()[r];
     const Misfit& misfit = misfits[r].misfit;
-    const std::vector<double>& times = model.item().recording.times;
+    const std::vector<double>& times = model.recording().recording.times;
     const double delay = model.Delay(misfits[r].nuisance);
     for (size_t k = 0; k < misfit.reactions.size(); ++k) {
       const MeasuredReaction& reading = model.Reactions()[k];

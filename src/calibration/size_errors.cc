@@ -31,7 +31,7 @@ Eigen::Vector3d CentreOfStretch(const Model& model) {
 std::vector<StretchedRecordings> ByCentre(const CalibrationProblem& problem) {
   std::vector<StretchedRecordings> groups;
   for (size_t r = 0; r < problem.models().size(); ++r) {
-    if (!problem.models()[r].item().fitted) continue;
+    if (!problem.models()[r].recording().fitted) continue;
     const Eigen::Vector3d centre = CentreOfStretch(problem.models()[r].model());
     auto group = std::find_if(groups.begin(), groups.end(), [&](const StretchedRecordings& other) {
       return other.centre == centre;
@@ -48,11 +48,9 @@ bool IsOf(const StretchedRecordings& group, size_t recording) {
 
 // The misfit of a group of recordings with the mesh stretched along an axis; nothing where it
 // cannot be predicted. `listed`: the study with regions that keep their nodes.
-std::optional<LinearisedMisfit> Stretched(const StretchedRecordings& group, Eigen::Index axis,
-                                          const CalibrationProblem& problem,
-                                          const PredictionStudy& listed,
-                                          const Eigen::VectorXd& values,
-                                          const LinearisedMisfit& near) {
+std::optional<LinearisedMisfit> LineariseStretched(
+    const StretchedRecordings& group, Eigen::Index axis, const CalibrationProblem& problem,
+    const PredictionStudy& listed, const Eigen::VectorXd& values, const LinearisedMisfit& near) {
   TetMesh larger = problem.body()->mesh;
   larger.nodes.row(axis).array() +=
       kProbe * listed.size_deviation * (larger.nodes.row(axis).array() - group.centre[axis]);
@@ -69,7 +67,7 @@ std::optional<LinearisedMisfit> Stretched(const StretchedRecordings& group, Eige
         CalibrationProblem(study, larger)
             .Linearise(Eigen::Map<const Eigen::VectorXd>(own.data(),
                                                          static_cast<Eigen::Index>(own.size())),
-                       false, {}, nullptr, &near);
+                       {.near = &near});
     if (changed.usable) return changed;
   } catch (const InputError&) {
     // For example, a grip that follows a scan loses it with the larger object.
@@ -91,7 +89,7 @@ Eigen::MatrixXd ChangesBySize(const CalibrationProblem& problem, const Eigen::Ve
     const StretchedRecordings& group = groups[static_cast<size_t>(k / 3)];
     const Eigen::Index axis = k % 3;
     const std::optional<LinearisedMisfit> changed =
-        Stretched(group, axis, problem, listed, values, misfit);
+        LineariseStretched(group, axis, problem, listed, values, misfit);
     if (!changed) return;
     auto own = changed->parts.begin();
     for (const LinearisedMisfit::Part& part : misfit.parts) {

@@ -4,8 +4,9 @@
 // r¼ + (r¼ − r½)/(p − 1), where p is the factor by which the change falls with each halving
 // (Richardson, Phil. Trans. A 210, 1911). A scheme of first order may converge with second order,
 // and effects with memory may reduce the order, so p is the observed one (Roache, Verification and
-// Validation in Computational Science and Engineering, 1998), between that of the scheme and second
-// order.
+// Validation in Computational Science and Engineering, 1998), of the whitened residuals, between
+// that of the scheme and second order. Of quasi-static steps, h is at most the longest distance
+// between frames, at which such steps end.
 #ifndef LACUNA_CALIBRATION_STEP_ERRORS_H_
 #define LACUNA_CALIBRATION_STEP_ERRORS_H_
 

@@ -52,16 +52,19 @@ bool MatchesFit(const RecordedResiduals& residuals, const ReplayedMotion& motion
 }
 
 void AddMotionTrends(const ReplayedMotion& motion, const RecordedResiduals& residuals,
-                     const FrameRange& range, ComparedPart* part) {
+                     const FrameRange& range, const ComparedRecording& recording,
+                     ComparedPart* part) {
   const auto in_range = [&](const Eigen::MatrixXd& all) -> Eigen::MatrixXd {
     return all.middleCols(range.first, range.Count());
   };
   const Eigen::VectorXd error = RmsOfFrames(PointLengths(in_range(residuals.difference)));
-  part->trends.push_back(TrendWith("strain", RmsOfFrames(in_range(motion.strain)), error));
-  part->trends.push_back(
-      TrendWith("strain_rate_per_s", RmsOfFrames(in_range(motion.strain_rate)), error));
-  part->trends.push_back(
-      TrendWith("height_m", in_range(motion.height).colwise().mean().transpose(), error));
+  const Eigen::VectorXd over_noise = RmsOfFrames(in_range(LengthsOverNoise(residuals, recording)));
+  const auto add_trend = [&](const char* quantity, const Eigen::VectorXd& values) {
+    part->trends.push_back(TrendWith(quantity, values, error, over_noise));
+  };
+  add_trend("strain", RmsOfFrames(in_range(motion.strain)));
+  add_trend("strain_rate_per_s", RmsOfFrames(in_range(motion.strain_rate)));
+  add_trend("height_m", in_range(motion.height).colwise().mean().transpose());
 }
 
 LoadedMost FindLoadedMost(const Model& model, const ReplayedMotion& motion) {
@@ -135,7 +138,7 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
     ComparedRecording& recording = comparison->record.recordings[r];
     const RecordedResiduals& residuals = comparison->residuals[r];
     const RecordingModel model = problem.ModelAt(r, fitted.values);
-    if (model.Markers() == nullptr) {
+    if (model.recording().ShowsScans()) {
       note_omission("this is not implemented for scans, such as those of " + recording.name);
       continue;
     }
@@ -153,13 +156,13 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
     recording.height_by_gravity = motion.up_from_gravity;
     const std::vector<FrameRange> ranges = FittedAndHeldOutRanges(residuals);
     for (size_t p = 0; p < ranges.size(); ++p)
-      AddMotionTrends(motion, residuals, ranges[p], &recording.parts[p]);
+      AddMotionTrends(motion, residuals, ranges[p], recording, &recording.parts[p]);
     recording.loaded_most = FindLoadedMost(model.model(), motion);
     comparison->forces[r] = EstimateUnexplainedForce(model, motion, problem.ErrorsOf(model));
     recording.force = comparison->forces[r]->record;
-    recording.field_frames =
-        WriteComparisonFields(model, residuals, motion, *comparison->forces[r],
-                              comparison->record.noise, run / "comparison" / std::to_string(r));
+    recording.field_frames = WriteComparisonFields(model, residuals, motion, *comparison->forces[r],
+                                                   LengthsOverNoise(residuals, recording),
+                                                   run / "comparison" / std::to_string(r));
     KeepMotionWithForce(model, nuisance, *comparison->forces[r], comparison->record.fit,
                         MotionFile(run, r));
     progress->Report(static_cast<int64_t>(r) + 1);

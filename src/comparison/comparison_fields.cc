@@ -51,7 +51,7 @@ void WriteBody(const Model& model, const TrajectoryState& state,
   WriteVtu(file, deformed, fields);
 }
 
-void WriteMarkers(const RecordedResiduals& residuals, int frame, double noise,
+void WriteMarkers(const RecordedResiduals& residuals, int frame, const Eigen::MatrixXd& over_noise,
                   const std::filesystem::path& file) {
   std::vector<int> seen;
   for (int m = 0; m < residuals.PointCount(); ++m)
@@ -68,7 +68,7 @@ void WriteMarkers(const RecordedResiduals& residuals, int frame, double noise,
   WriteVtp(file, cloud,
            {{"predicted_m", cloud.points + difference},
             {"difference_m", difference},
-            {"difference_over_sigma", difference.colwise().norm() / (std::sqrt(3.0) * noise)},
+            {"difference_over_sigma", over_noise.col(frame)(seen).transpose()},
             {"fitted", Eigen::MatrixXd::Constant(1, count, residuals.fitted[frame] != 0)},
             {"marker", marker}});
 }
@@ -76,8 +76,8 @@ void WriteMarkers(const RecordedResiduals& residuals, int frame, double noise,
 }  // namespace
 
 int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& residuals,
-                          const ReplayedMotion& motion, const UnexplainedForce& force, double noise,
-                          const std::filesystem::path& folder) {
+                          const ReplayedMotion& motion, const UnexplainedForce& force,
+                          const Eigen::MatrixXd& over_noise, const std::filesystem::path& folder) {
   MakeFolder(folder / "fields");
   const auto file = [&](const char* what, int frame, const char* extension) {
     return folder / "fields" / fmt::format("{}_{:05}.{}", what, residuals.frames[frame], extension);
@@ -95,7 +95,7 @@ int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& 
     WriteBody(model.model(), motion.states[k], motion.registration,
               force.record.usable ? &force : nullptr, time, file("body", frame, "vtu"));
     bodies.push_back({time, file("body", frame, "vtu")});
-    WriteMarkers(residuals, frame, noise, file("markers", frame, "vtp"));
+    WriteMarkers(residuals, frame, over_noise, file("markers", frame, "vtp"));
     markers.push_back({time, file("markers", frame, "vtp")});
   }
   WritePvd(folder / "body.pvd", bodies);

@@ -20,13 +20,13 @@ inline constexpr int kMostFieldFrames = 60;
 //                first; nodal_recovery.h) and unexplained_force_N_per_m3 (if usable) at the nodes;
 //                strain, the largest principal Green–Lagrange strain, in the tetrahedra;
 //   markers.pvd  the measured markers: predicted_m, difference_m,
-//                difference_over_sigma (the length of the difference over √3 `noise`, m), fitted,
-//                marker. Markers that were not observed are left out.
+//                difference_over_sigma (`over_noise`, m × n: LengthsOverNoise()), fitted, marker.
+//                Markers that were not observed are left out.
 // Both are in the recording's coordinate system. Returns the number of frames. Throws InputError
 // when a file cannot be written.
 int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& residuals,
-                          const ReplayedMotion& motion, const UnexplainedForce& force, double noise,
-                          const std::filesystem::path& folder);
+                          const ReplayedMotion& motion, const UnexplainedForce& force,
+                          const Eigen::MatrixXd& over_noise, const std::filesystem::path& folder);
 
 }  // namespace lacuna
 

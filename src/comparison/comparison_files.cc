@@ -32,14 +32,14 @@ std::string ErrorsByFrame(const Comparison& comparison) {
     const RecordedResiduals& residuals = comparison.residuals[r];
     const ComparedRecording& recording = comparison.record.recordings[r];
     const Eigen::MatrixXd lengths = PointLengths(residuals.difference);
+    const Eigen::MatrixXd over_noise = LengthsOverNoise(residuals, recording);
     for (int f = 0; f < static_cast<int>(residuals.frames.size()); ++f) {
       KnownLengths known;
       for (const double length : lengths.col(f)) known.Add(length);
-      const double rms = Rms(lengths.col(f));
       const Eigen::Vector3d mean = MeanOver(residuals.difference, f, f).mean;
       text += fmt::format("{},{},{},{:d},{},{},{},{},{},{},{}\n", r, residuals.frames[f],
-                          residuals.times[f], residuals.fitted[f] != 0, known.count, rms,
-                          rms / recording.RmsOfNoise(recording.noise), known.largest, mean[0],
+                          residuals.times[f], residuals.fitted[f] != 0, known.count,
+                          Rms(lengths.col(f)), Rms(over_noise.col(f)), known.largest, mean[0],
                           mean[1], mean[2]);
     }
   }
@@ -54,6 +54,7 @@ std::string ErrorsByMarker(const Comparison& comparison) {
     const RecordedResiduals& residuals = comparison.residuals[r];
     const ComparedRecording& recording = comparison.record.recordings[r];
     const Eigen::MatrixXd lengths = PointLengths(residuals.difference);
+    const Eigen::MatrixXd over_noise = LengthsOverNoise(residuals, recording);
     const Eigen::Matrix3Xd places = MeanPlaces(residuals);
     const std::vector<FrameRange> ranges = FittedAndHeldOutRanges(residuals);
     for (size_t p = 0; p < ranges.size(); ++p) {
@@ -63,12 +64,12 @@ std::string ErrorsByMarker(const Comparison& comparison) {
         for (const double length : lengths.row(m).segment(range.first, range.Count()))
           known.Add(length);
         const double rms = recording.parts[p].point_rms[m];
+        const double multiple = Rms(over_noise.row(m).segment(range.first, range.Count()));
         const Eigen::Vector3d mean =
             MeanOver(residuals.difference.middleRows<3>(3 * m), range.first, range.last).mean;
         text += fmt::format("{},{},{:d},{},{},{},{},{},{},{},{},{},{}\n", r, m, range.fitted,
-                            known.count, rms, rms / recording.RmsOfNoise(recording.noise),
-                            known.largest, mean[0], mean[1], mean[2], places(0, m), places(1, m),
-                            places(2, m));
+                            known.count, rms, multiple, known.largest, mean[0], mean[1], mean[2],
+                            places(0, m), places(1, m), places(2, m));
       }
     }
   }
@@ -83,8 +84,7 @@ std::string ErrorsByQuantity(const ComparisonRecord& record) {
       for (const ErrorTrend& trend : part.trends)
         for (const ErrorBin& bin : trend.bins)
           text += fmt::format("{},{:d},{},{},{},{},{},{},{}\n", r, part.fitted, trend.quantity,
-                              bin.low, bin.high, bin.mean, bin.count, bin.rms,
-                              bin.rms / recording.RmsOfNoise(recording.noise));
+                              bin.low, bin.high, bin.mean, bin.count, bin.rms, bin.rms_over_sigma);
   }
   return text;
 }

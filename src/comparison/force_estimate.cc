@@ -11,13 +11,12 @@
 #include "calibration/calibration_problem.h"
 #include "comparison/force_linearisation.h"
 #include "comparison/force_measures.h"
+#include "effects/free_fall.h"
 
 namespace lacuna {
 namespace {
 
-constexpr double kLargestWidth = 9.80665;  // m/s², upper limit of the width s of the prior: gravity
-constexpr int kShapes = SmoothForce::kShapes;
-constexpr int kFewestFrames = 6;  // smallest number of frames after the start of the motion
+constexpr double kLargestWidth = kStandardGravity;  // m/s², upper limit of the width s of the prior
 // The search has converged when the error along the new motion differs from the linear prediction
 // by less than this share of the prediction, or by less than this many σ. Smaller: more
 // predictions.
@@ -33,23 +32,11 @@ constexpr double kWorthwhile = 0.5;
 constexpr double kVariations[] = {0.1, 1};
 constexpr double kPersistences[] = {0.7, 12};
 
-// L with L Lᵀ = exp(−|i − j| / persistence) between knots, times each mode's own variance.
 std::vector<Eigen::MatrixXd> PriorShapes(int knots) {
   std::vector<Eigen::MatrixXd> shapes;
-  for (const double persistence : kPersistences) {
-    Eigen::MatrixXd correlation(knots, knots);
-    for (int i = 0; i < knots; ++i)
-      for (int j = 0; j < knots; ++j) correlation(i, j) = std::exp(-std::abs(i - j) / persistence);
-    const Eigen::MatrixXd in_time = correlation.llt().matrixL();
-    for (const double variation : kVariations) {
-      Eigen::MatrixXd shape = Eigen::MatrixXd::Zero(kShapes * knots, kShapes * knots);
-      for (int i = 0; i < knots; ++i)
-        for (int j = 0; j <= i; ++j)
-          for (int k = 0; k < kShapes; ++k)
-            shape(kShapes * i + k, kShapes * j + k) = in_time(i, j) * (k < 3 ? 1 : variation);
-      shapes.push_back(std::move(shape));
-    }
-  }
+  for (const double persistence : kPersistences)
+    for (const double variation : kVariations)
+      shapes.push_back(PersistentPriorRoot(knots, persistence, variation));
   return shapes;
 }
 
@@ -81,6 +68,10 @@ ForceStep LinearStep(const LinearisedForce& at, const SearchState& state,
   Eigen::MatrixXd information = at.nuisance_jacobian.transpose() * at.nuisance_jacobian;
   information.diagonal() += prior_deviations.cwiseAbs2().cwiseInverse();
   step.nuisance = -information.ldlt().solve(at.nuisance_jacobian.transpose() * with);
+  for (size_t k = 0; k < at.is_kept.size(); ++k)
+    if (at.is_kept[k])
+      step.nuisance[static_cast<Eigen::Index>(k)] =
+          state.motion.nuisance[static_cast<Eigen::Index>(k)];
   step.expected_rms = at.Rms(with + at.nuisance_jacobian * step.nuisance);
   return step;
 }
@@ -142,15 +133,10 @@ UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
                                           const ReplayedMotion& motion,
                                           const MeasurementErrors& errors) {
   UnexplainedForce force;
-  const double start = motion.states.front().time, end = motion.states.back().time;
-  const std::vector<double>& times = recording.item().recording.times;
-  const int moving = static_cast<int>(
-      std::count_if(recording.item().frames.begin(), recording.item().frames.end(),
-                    [&](int frame) { return times[frame] - motion.delay > start; }));
-  if (moving < kFewestFrames)
-    return Unusable(force, "there are too few frames after the start of the motion");
+  const std::optional<SmoothForce> zero = SmoothForceDuring(recording, motion, kMostForceKnots);
+  if (!zero) return Unusable(force, "there are too few frames after the start of the motion");
   SmoothForce& field = force.field;
-  field = MakeSmoothForce(recording.model(), start, end, std::min(kMostForceKnots, moving));
+  field = *zero;
   const ForceLinearisation linearisation(recording, motion, field, errors);
   SearchState state{motion, Eigen::VectorXd::Zero(field.amplitudes.size()), {}};
   ForceFitSummary& fit = force.record.fit;

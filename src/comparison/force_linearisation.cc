@@ -6,14 +6,13 @@
 namespace lacuna {
 namespace {
 
-constexpr int kShapes = SmoothForce::kShapes;
 // Largest number of entries of the force's Jacobian. Larger: finer resolution in time for long
 // recordings, more memory.
 constexpr double kMostEntries = 25e6;
 
 int FrameStride(int frames, int markers, int knots) {
-  const int most =
-      std::max(2 * knots, static_cast<int>(kMostEntries / (3.0 * markers * kShapes * knots)));
+  const int most = std::max(
+      2 * knots, static_cast<int>(kMostEntries / (3.0 * markers * SmoothForce::kShapes * knots)));
   return (frames + most - 1) / most;
 }
 
@@ -38,7 +37,7 @@ ForceLinearisation::ForceLinearisation(const RecordingModel& recording,
     shapes_.rightCols(1) = nuisance.direction.perturbation.held_force;
   }
   const int markers = recording.PointCount();
-  const int frames = static_cast<int>(recording.item().frames.size());
+  const int frames = static_cast<int>(recording.recording().frames.size());
   const int stride = FrameStride(frames, markers, field.KnotCount());
   for (int frame = 0; frame < frames; frame += stride) {
     frames_.push_back(frame);
@@ -52,7 +51,7 @@ Eigen::Index ForceLinearisation::Rows() const {
 }
 
 const Eigen::Matrix3Xd& ForceLinearisation::Measured(int frame) const {
-  return recording_.item().recording.markers.positions[recording_.item().frames[frame]];
+  return recording_.recording().recording.markers.positions[recording_.recording().frames[frame]];
 }
 
 template <typename Visit>
@@ -64,7 +63,7 @@ void ForceLinearisation::ForEachObserved(const Visit& visit) const {
 }
 
 Eigen::MatrixXd ForceLinearisation::Whiten(const Eigen::MatrixXd& rows) const {
-  const PredictedRecording& item = recording_.item();
+  const PredictedRecording& item = recording_.recording();
   const std::vector<Eigen::VectorXd>& weights = item.recording.markers.weights;
   std::vector<double> observed;
   for (const int frame : frames_)
@@ -95,11 +94,7 @@ std::vector<Eigen::MatrixXd> ForceLinearisation::MarkerResponses(
   const Eigen::Index forces = field_.amplitudes.size(), nuisances = prior_deviations_.size();
   const ForceHistories hat_functions = [&](double time) {
     Eigen::MatrixXd amplitude = Eigen::MatrixXd::Zero(shapes_.cols(), forces + nuisances);
-    const SmoothForce::KnotWeight at = field_.At(time);
-    for (int j = 0; j < kShapes; ++j) {
-      amplitude(j, kShapes * at.knot + j) = 1 - at.next;
-      amplitude(j, kShapes * (at.knot + 1) + j) = at.next;
-    }
+    amplitude.topLeftCorner(SmoothForce::kShapes, forces) = field_.HatFunctions(time);
     return amplitude;
   };
   Eigen::MatrixXd held = hat_functions(field_.start);
@@ -119,11 +114,17 @@ LinearisedForce ForceLinearisation::Linearise(const ReplayedMotion& motion,
   const Eigen::Index forces = field_.amplitudes.size(), nuisances = prior_deviations_.size();
   std::vector<double> times;
   for (const int frame : frames_)
-    times.push_back(recording_.item().recording.times[recording_.item().frames[frame]] -
+    times.push_back(recording_.recording().recording.times[recording_.recording().frames[frame]] -
                     motion.delay);
   const std::vector<Eigen::MatrixXd> responses = MarkerResponses(response, times);
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(Rows(), forces + nuisances);
   LinearisedForce result;
+  for (Eigen::Index k = 0; k < nuisances; ++k) {
+    const MisfitDirection& direction = recording_.nuisances()[static_cast<size_t>(k)].direction;
+    result.is_kept.push_back(
+        held_shape_[static_cast<size_t>(k)] < 0 &&
+        (direction.IsSimulated() || direction.kind == MisfitDirection::Kind::kCellDelay));
+  }
   ForEachObserved([&](int frame, int m, Eigen::Index row) {
     const Eigen::Index index = row / (3 * recording_.PointCount());
     result.coordinates += 3;
@@ -132,10 +133,8 @@ LinearisedForce ForceLinearisation::Linearise(const ReplayedMotion& motion,
     for (Eigen::Index k = 0; k < nuisances; ++k) {
       const MisfitDirection& direction = recording_.nuisances()[static_cast<size_t>(k)].direction;
       auto column = jacobian.col(forces + k).segment<3>(row);
-      // The columns of the hold are filled above. The delay of a load cell does not change the
-      // markers. The placement of a grip stays as fitted: moving a grip changes the motion as
-      // forces do.
-      if (direction.IsSimulated() || direction.kind == MisfitDirection::Kind::kCellDelay) continue;
+      // The columns of the hold are filled above.
+      if (direction.IsSimulated() || result.is_kept[static_cast<size_t>(k)]) continue;
       if (direction.kind != MisfitDirection::Kind::kClock)
         column = recording_.ByRegistration(direction, motion.registration,
                                            motion.predicted.col(frame).segment<3>(3 * m));

@@ -8,7 +8,7 @@
 
 #include "analysis/measurement_errors.h"
 #include "fem/reduced_response.h"
-#include "prediction/predicted_motion.h"
+#include "prediction/recording_model.h"
 #include "prediction/replayed_motion.h"
 #include "prediction/smooth_force.h"
 
@@ -21,6 +21,10 @@ struct LinearisedForce {
   Eigen::VectorXd residual;
   Eigen::MatrixXd force_jacobian;     // columns: SmoothForce::amplitudes column by column
   Eigen::MatrixXd nuisance_jacobian;  // columns: RecordingModel::nuisances()
+  // For each nuisance, whether it keeps its value: its column is left out (0). The delay of a load
+  // cell does not change the markers. The placement of a grip stays as fitted, since moving a grip
+  // changes the motion as forces do.
+  std::vector<char> is_kept;
   double Rms(const Eigen::VectorXd& rows) const;
 };
 

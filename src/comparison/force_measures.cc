@@ -5,10 +5,11 @@
 #include <limits>
 #include <vector>
 
+#include "effects/free_fall.h"
+
 namespace lacuna {
 namespace {
 
-constexpr double kStandardGravity = 9.80665;  // m/s²
 constexpr int kShapes = SmoothForce::kShapes;
 
 // The Jacobian by the amplitudes at all knots (rows × 6·knots) of a quantity whose Jacobian by the

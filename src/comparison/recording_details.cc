@@ -11,6 +11,7 @@
 #include "prediction/prediction_study.h"
 #include "prediction/prediction_study_reader.h"
 #include "record/run_directory.h"
+#include "scan/recording.h"
 
 namespace lacuna {
 namespace {
@@ -35,7 +36,7 @@ Eigen::VectorXd GripDistances(const Recording& recording, const Eigen::Matrix3Xd
 bool MatchesRun(const ComparedRecording& compared, const RecordedResiduals& residuals,
                 const PredictedRecording& item) {
   if (item.name != compared.name || item.frames != residuals.frames) return false;
-  if (compared.is_scan || item.scans != nullptr) return compared.is_scan && item.scans != nullptr;
+  if (compared.is_scan || item.ShowsScans()) return compared.is_scan && item.ShowsScans();
   const Eigen::Matrix3Xd& first = item.recording.markers.positions[residuals.frames.front()];
   if (3 * first.cols() != residuals.measured.rows()) return false;
   for (Eigen::Index m = 0; m < first.cols(); ++m)
@@ -48,8 +49,9 @@ bool MatchesRun(const ComparedRecording& compared, const RecordedResiduals& resi
 
 }  // namespace
 
-void AddRecordingDetails(const std::filesystem::path& run, const CalibrationRecord& record,
-                         Comparison* comparison) {
+std::vector<char> AddRecordingDetails(const std::filesystem::path& run,
+                                      const CalibrationRecord& record, Comparison* comparison) {
+  std::vector<char> are_markers(comparison->residuals.size());
   std::string problem;
   try {
     const PredictionStudy study =
@@ -64,6 +66,7 @@ void AddRecordingDetails(const std::filesystem::path& run, const CalibrationReco
       }
       const Recording& recording = study.recordings[r].recording;
       if (!compared.is_scan) compared.point_names = recording.markers.names;
+      are_markers[r] = !compared.is_scan && !HasTrackedPoints(recording);
       compared.grip_distance = GripDistances(
           recording,
           compared.is_scan ? record.recordings[r].scan->places : recording.markers.places,
@@ -78,6 +81,7 @@ void AddRecordingDetails(const std::filesystem::path& run, const CalibrationReco
         "is not known: " +
         problem + ".");
   }
+  return are_markers;
 }
 
 }  // namespace lacuna

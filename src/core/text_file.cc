@@ -78,7 +78,7 @@ std::string ReadWholeFile(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file))
     throw InputError({file.string()}, "is a folder; expected a file");
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError({file.string()}, "cannot be opened for reading");
+  if (!stream) throw InputError({file.string()}, "cannot be read: no such file, or no permission");
   std::string content(std::istreambuf_iterator<char>(stream), {});
   if (stream.bad()) throw InputError({file.string()}, "cannot be read completely");
   return content;

@@ -23,7 +23,7 @@ namespace lacuna {
 namespace {
 
 constexpr int kStopped = 3, kThrew = 4;  // exit statuses of a job's process
-constexpr auto kPause = std::chrono::milliseconds(10);
+constexpr auto kPollInterval = std::chrono::milliseconds(10);
 
 int Work(size_t k, int threads, const std::function<void(size_t)>& job) {
   // The kernel sends SIGTERM to the job if the parent process ends.
@@ -97,7 +97,7 @@ int ShareOut(size_t count, const WorkerOptions& options, const std::function<voi
         options.crashed(at->second, HowItEnded(status));
       at = running.erase(at);
     }
-    if (!running.empty()) std::this_thread::sleep_for(kPause);
+    if (!running.empty()) std::this_thread::sleep_for(kPollInterval);
   }
   return failed || next < count;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -85,10 +86,10 @@ double NaturalValueEvidence(const Eigen::Vector3d& mean, const Eigen::Vector3d& 
   // The density of the posterior on the sphere, whose curvature is small beside the deviations,
   // over that of the normal prior there.
   const double on_sphere = -0.5 * std::pow((natural - length) / radial, 2) -
-                           std::log(radial * std::sqrt(2 * M_PI)) -
-                           std::log(4 * M_PI * natural * natural);
+                           std::log(radial * std::sqrt(2 * std::numbers::pi)) -
+                           std::log(4 * std::numbers::pi * natural * natural);
   const double before =
-      -0.5 * std::pow(natural / prior, 2) - 3 * std::log(prior * std::sqrt(2 * M_PI));
+      -0.5 * std::pow(natural / prior, 2) - 3 * std::log(prior * std::sqrt(2 * std::numbers::pi));
   const double factor = on_sphere - before;
   const double largest = std::max(factor, 0.0);
   return largest + std::log(0.5 * std::exp(-largest) + 0.5 * std::exp(factor - largest));

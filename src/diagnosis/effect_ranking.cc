@@ -46,9 +46,9 @@ HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixX
   add(std::move(unknown), ranking.unknown_force);
   priors.resize(static_cast<size_t>(width), {0, 1, false});
   HypothesisSpace space = MakeHypothesisSpace(
-      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
-      WhitenedRows(columns, misfit, noise.correlation_time, false), std::move(priors), base.cols(),
-      std::move(hypotheses), noise.variance, ObservedRows(misfit));
+      WhitenedRows(misfit.residual, misfit, {.correlation_time = noise.correlation_time}),
+      WhitenedRows(columns, misfit, {.correlation_time = noise.correlation_time}),
+      std::move(priors), base.cols(), std::move(hypotheses), noise.variance, ObservedRows(misfit));
   space.model_error = ranking.ModelError();
   return space;
 }

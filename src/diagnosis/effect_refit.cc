@@ -20,7 +20,7 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
   const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, values, known);
   for (size_t r = 0; r < misfits.size(); ++r) {
     const MisfitMeasure &in_fit = misfits[r].in_fit, &out = misfits[r].held_out;
-    if (!problem.models()[r].item().fitted) {
+    if (!problem.models()[r].recording().fitted) {
       const double squares = out.rms_over_sigma * out.rms_over_sigma * out.points;
       unfitted_noise += squares;
       unfitted_points += out.points;
@@ -171,7 +171,7 @@ void FinishBeside(const ExtendedProblem& extended, const RefitSetting& setting,
   if (!misfit.usable) return;
   refit->amounts = extended.AmountsAt(misfit);
   const Eigen::VectorXd residual = misfit.residual + setting.adopted.columns * refit->amounts;
-  const Eigen::VectorXd white = WhitenedRows(residual, of_baseline, 0, false);
+  const Eigen::VectorXd white = WhitenedRows(residual, of_baseline);
   refit->errors.without_nuisances = HeldOutInNoise(white, of_baseline);
   if (settles) {
     SettleRefit(extended.problem(), setting, {values, std::move(refit->hypothesis)}, refit);
@@ -198,7 +198,7 @@ EffectRefit FinishedRefit(ExtendedFit fit, const ExtendedProblem& extended,
   // With markers, one prediction serves both.
   LinearisedMisfit own_misfit = std::move(fit.misfit);
   if (!own_misfit.usable && !with.HasScans())
-    own_misfit = with.Linearise(calibration.parameters, true, {}, nullptr, &misfit);
+    own_misfit = with.Linearise(calibration.parameters, {.with_jacobian = true, .near = &misfit});
   const LinearisedMisfit* known = own_misfit.usable ? &own_misfit : nullptr;
   refit.hypothesis =
       HypothesisAt(with, calibration.parameters, setting.adopted, misfit, nullptr, known);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <ranges>
 
 #include "calibration/calibration_fits.h"
 #include "calibration/linear_misfit.h"
@@ -57,8 +58,10 @@ Prediction FittedPart(const LinearisedMisfit& misfit) {
   prediction.usable = misfit.usable;
   prediction.message = misfit.message;
   if (!misfit.usable) return prediction;
-  prediction.residual = FittedRows(WhitenedRows(misfit.residual, misfit, 0, true), misfit);
-  prediction.jacobian = FittedRows(WhitenedRows(misfit.jacobian, misfit, 0, true), misfit);
+  prediction.residual =
+      FittedRows(WhitenedRows(misfit.residual, misfit, {.fitted_only = true}), misfit);
+  prediction.jacobian =
+      FittedRows(WhitenedRows(misfit.jacobian, misfit, {.fitted_only = true}), misfit);
   for (const LinearisedMisfit::Part& part : misfit.parts) {
     const Eigen::Index first = static_cast<Eigen::Index>(prediction.before.size());
     const Eigen::Index series = part.layout.series;
@@ -89,9 +92,9 @@ bool CoversHeldOut(const CalibrationProblem& problem) {
   if (problem.HasScans()) return false;
   size_t fitted = 0, all = 0;
   for (const RecordingModel& model : problem.models()) {
-    if (!model.item().fitted) continue;
-    fitted += model.FittedFrames().size();
-    all += model.item().frames.size();
+    if (!model.recording().fitted) continue;
+    fitted += model.recording().FittedFrames().size();
+    all += model.recording().frames.size();
   }
   return static_cast<double>(fitted) >= kCoveredShare * static_cast<double>(all);
 }
@@ -116,17 +119,18 @@ ExtendedProblem::ExtendedProblem(const BaselineModel& baseline, const ScoredVari
       with_(study_, baseline.problem.body()->mesh),
       shared_(static_cast<Eigen::Index>(baseline.problem.study().fitted.size())),
       added_(static_cast<Eigen::Index>(study_.fitted.size()) - shared_),
-      residual_(FittedRows(WhitenedRows(baseline.misfit.residual, baseline.misfit, 0, true),
-                           baseline.misfit)),
-      nuisances_(
-          FittedRows(WhitenedRows(adopted.columns, baseline.misfit, 0, true), baseline.misfit),
-          adopted.priors),
+      residual_(
+          FittedRows(WhitenedRows(baseline.misfit.residual, baseline.misfit, {.fitted_only = true}),
+                     baseline.misfit)),
+      nuisances_(FittedRows(WhitenedRows(adopted.columns, baseline.misfit, {.fitted_only = true}),
+                            baseline.misfit),
+                 adopted.priors),
       covers_held_out_(CoversHeldOut(with_)),
       parameters_(with_.parameters()) {}
 
 Eigen::VectorXd ExtendedProblem::AmountsAt(const LinearisedMisfit& misfit) const {
-  return nuisances_.BestAmounts(
-      FittedRows(WhitenedRows(misfit.residual, baseline_.misfit, 0, true), baseline_.misfit));
+  return nuisances_.BestAmounts(FittedRows(
+      WhitenedRows(misfit.residual, baseline_.misfit, {.fitted_only = true}), baseline_.misfit));
 }
 
 Eigen::VectorXd ExtendedProblem::OwnParameters(const Eigen::VectorXd& values) const {
@@ -164,9 +168,14 @@ Eigen::VectorXd ExtendedProblem::Start(const Eigen::VectorXd& refitted) const {
   const Eigen::VectorXd unchanged = PartWay(1, values);
   if (effect_ == nullptr) return unchanged;
   const double least_share = kThresholds.refit.least_modulus_share;
-  Eigen::VectorXd expected = effect_->expected_values;
-  for (Eigen::Index k = 0; k < shared_; ++k)
-    if (parameters_[k].log_scale && !(expected[k] > least_share * values[k])) expected = values;
+  // A linear prediction that takes a modulus to almost nothing or below holds for none of the
+  // values, because they are predicted together.
+  const Eigen::VectorXd& predicted = effect_->expected_values;
+  const auto is_far_below = [&](Eigen::Index k) {
+    return parameters_[k].log_scale && !(predicted[k] > least_share * values[k]);
+  };
+  const bool fails = std::ranges::any_of(std::views::iota(Eigen::Index{0}, shared_), is_far_below);
+  const Eigen::VectorXd& expected = fails ? values : predicted;
   const double without = nuisances_.OfResidual(residual_).norm();
   Eigen::VectorXd start = unchanged;
   double least = ResidualNorm(start);
@@ -286,7 +295,7 @@ Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobia
   Prediction prediction;
   if (with_jacobian && covers_held_out_) {
     // The last such prediction becomes the fit's misfit.
-    memory->latest = with_.Linearise(at, true, {}, nullptr, &baseline_.misfit);
+    memory->latest = with_.Linearise(at, {.with_jacobian = true, .near = &baseline_.misfit});
     memory->of_latest = at;
     prediction = FittedPart(memory->latest);
   } else {

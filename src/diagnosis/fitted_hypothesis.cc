@@ -55,9 +55,11 @@ BestStep BestNear(const FittedHypothesis& hypothesis,
                   const NoiseLevel& noise, bool fitted_only) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::MatrixXd columns =
-      WhitenedRows(misfit.jacobian, misfit, noise.correlation_time, fitted_only);
+      WhitenedRows(misfit.jacobian, misfit,
+                   {.correlation_time = noise.correlation_time, .fitted_only = fitted_only});
   const Eigen::VectorXd residual =
-      WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only);
+      WhitenedRows(misfit.residual, misfit,
+                   {.correlation_time = noise.correlation_time, .fitted_only = fitted_only});
   QuadraticCost model{0.5 * residual.squaredNorm() / noise.variance,
                       columns.transpose() * residual / noise.variance,
                       columns.transpose() * columns / noise.variance};
@@ -108,8 +110,8 @@ void SetNuisances(const AdoptedNuisances& adopted, const LinearisedMisfit& corre
   hypothesis->residual = hypothesis->misfit.residual;
   if (nuisances.cols() == 0) return;
   const LinearFit fit =
-      LinearGaussianModel(WhitenedRows(hypothesis->residual, correspondences, 0, false),
-                          WhitenedRows(nuisances, correspondences, 0, false), adopted.priors)
+      LinearGaussianModel(WhitenedRows(hypothesis->residual, correspondences),
+                          WhitenedRows(nuisances, correspondences), adopted.priors)
           .FitAll(1);
   hypothesis->residual += nuisances * fit.change;
 }
@@ -124,8 +126,10 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
   if (known != nullptr)
     hypothesis.misfit = ComparedAs(*known, correspondences);
   else
-    hypothesis.misfit = problem.Linearise(values, near == nullptr, {}, &correspondences,
-                                          near != nullptr ? &near->misfit : &correspondences);
+    hypothesis.misfit =
+        problem.Linearise(values, {.with_jacobian = near == nullptr,
+                                   .correspondences = &correspondences,
+                                   .near = near != nullptr ? &near->misfit : &correspondences});
   if (!hypothesis.misfit.usable) return hypothesis;
   hypothesis.priors = PriorsAbout(problem.parameters(), values);
   hypothesis.parameters = static_cast<Eigen::Index>(hypothesis.priors.size());
@@ -138,9 +142,11 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
                               bool fitted_only) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::MatrixXd columns =
-      WhitenedRows(misfit.jacobian, misfit, noise.correlation_time, fitted_only);
+      WhitenedRows(misfit.jacobian, misfit,
+                   {.correlation_time = noise.correlation_time, .fitted_only = fitted_only});
   const Eigen::VectorXd residual =
-      WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only);
+      WhitenedRows(misfit.residual, misfit,
+                   {.correlation_time = noise.correlation_time, .fitted_only = fitted_only});
   // The amounts of adopted nuisances are at their best; the parameters stay where they are.
   const LinearFit adopted = FitAdopted(
       hypothesis, residual, columns.rightCols(columns.cols() - hypothesis.parameters), noise);
@@ -166,9 +172,9 @@ Eigen::VectorXd WhitenedResidual(const FittedHypothesis& hypothesis, const Noise
   const LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::Index adopted = misfit.jacobian.cols() - hypothesis.parameters;
   const Eigen::VectorXd residual =
-      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false);
-  const Eigen::MatrixXd columns =
-      WhitenedRows(misfit.jacobian.rightCols(adopted), misfit, noise.correlation_time, false);
+      WhitenedRows(misfit.residual, misfit, {.correlation_time = noise.correlation_time});
+  const Eigen::MatrixXd columns = WhitenedRows(misfit.jacobian.rightCols(adopted), misfit,
+                                               {.correlation_time = noise.correlation_time});
   return residual + columns * FitAdopted(hypothesis, residual, columns, noise).change;
 }
 

@@ -59,7 +59,7 @@ MisfitDirection StrainMotion(const GripNodes& grip, const Eigen::Matrix3Xd& rest
 
 bool Deforms(const CalibrationProblem& problem, size_t grip) {
   return std::any_of(problem.models().begin(), problem.models().end(), [&](const auto& model) {
-    const RecordedGrip* recorded = RecordedAs(model.item().recording, grip);
+    const RecordedGrip* recorded = RecordedAs(model.recording().recording, grip);
     return recorded != nullptr && recorded->deforms;
   });
 }
@@ -108,7 +108,7 @@ LinearisedWithGrips LineariseWithGrips(const CalibrationProblem& problem,
   linearised.directions = static_cast<Eigen::Index>(directions.size());
   const std::vector<MisfitDirection>& of_grips = linearised.grips.directions;
   directions.insert(directions.end(), of_grips.begin(), of_grips.end());
-  linearised.misfit = problem.Linearise(values, /*with_jacobian=*/true, directions);
+  linearised.misfit = problem.Linearise(values, {.with_jacobian = true, .directions = directions});
   return linearised;
 }
 

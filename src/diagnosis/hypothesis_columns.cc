@@ -172,8 +172,8 @@ void ColumnsBuilder::AddGripNuisances() {
 
 void ColumnsBuilder::AddRecordingNuisances() {
   const LinearisedMisfit& misfit = linearised_.misfit;
-  const Eigen::VectorXd whitened =
-      WhitenedRows(ResidualAfter(all_.base), misfit, all_.noise.correlation_time, false);
+  const Eigen::VectorXd whitened = WhitenedRows(ResidualAfter(all_.base), misfit,
+                                                {.correlation_time = all_.noise.correlation_time});
   for (NuisanceCandidate& nuisance : RecordingNuisances(problem_, misfit, whitened))
     AddNuisance(std::move(nuisance));
 }
@@ -190,10 +190,9 @@ void ColumnsBuilder::SetBase() {
 
 Eigen::VectorXd ColumnsBuilder::ResidualAfter(const std::vector<int>& chosen) const {
   const LinearisedMisfit& misfit = linearised_.misfit;
-  const LinearFit fit =
-      LinearGaussianModel(WhitenedRows(misfit.residual, misfit, 0, false),
-                          WhitenedRows(all_.columns, misfit, 0, false), all_.priors)
-          .Fit(chosen, 1);
+  const LinearFit fit = LinearGaussianModel(WhitenedRows(misfit.residual, misfit),
+                                            WhitenedRows(all_.columns, misfit), all_.priors)
+                            .Fit(chosen, 1);
   return misfit.residual + all_.columns(Eigen::all, chosen) * fit.change;
 }
 

@@ -39,8 +39,9 @@ WeighedColumns WeighColumns(const LinearisedMisfit& misfit, const Eigen::MatrixX
                             const std::vector<LinearPrior>& priors, double correlation_time) {
   Eigen::MatrixXd rows(misfit.residual.size(), columns.cols() + 1);
   rows << misfit.residual, columns;
-  const Eigen::MatrixXd all = WhitenedRows(rows, misfit, correlation_time, false);
-  const Eigen::MatrixXd fitted = WhitenedRows(rows, misfit, correlation_time, true);
+  const Eigen::MatrixXd all = WhitenedRows(rows, misfit, {.correlation_time = correlation_time});
+  const Eigen::MatrixXd fitted =
+      WhitenedRows(rows, misfit, {.correlation_time = correlation_time, .fitted_only = true});
   const Eigen::Index count = columns.cols();
   return {LinearGaussianModel(all.col(0), all.rightCols(count), priors),
           LinearGaussianModel(fitted.col(0), fitted.rightCols(count), priors), all.col(0),

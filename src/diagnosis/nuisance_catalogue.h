@@ -40,7 +40,7 @@ struct RecordingContext {
   double spacing = 0;                        // s, mean time between frames
   Eigen::Vector3d centre;                    // m, of the object at rest
 
-  const std::string& Name() const { return problem.models()[part.recording].item().name; }
+  const std::string& Name() const { return problem.models()[part.recording].recording().name; }
   Eigen::Index Frames() const { return static_cast<Eigen::Index>(part.layout.times.size()); }
   // A column with value(frame, series) in the rows of the points and 0 elsewhere.
   Eigen::VectorXd Column(const std::function<double(Eigen::Index frame, int series)>& value) const;

@@ -19,7 +19,7 @@ NuisanceCard Card() {
 
 std::optional<NuisanceCandidate> Make(const RecordingContext& at) {
   // A study with a clock deviation fits the clock.
-  if (at.problem.models()[at.part.recording].item().clock_deviation != 0) return std::nullopt;
+  if (at.problem.models()[at.part.recording].recording().clock_deviation != 0) return std::nullopt;
   NuisanceCandidate candidate;
   candidate.what = "the clock of " + at.Name();
   candidate.columns = Eigen::MatrixXd::Zero(at.misfit.residual.size(), 1);

@@ -69,7 +69,7 @@ bool HasExtent(const CalibrationProblem& problem, size_t grip) {
   return std::all_of(problem.models().begin(), problem.models().end(),
                      [&](const RecordingModel& model) {
                        const auto& grips = model.model().grips;
-                       const RecordedGrip* recorded = RecordedAs(model.item().recording, grip);
+                       const RecordedGrip* recorded = RecordedAs(model.recording().recording, grip);
                        const bool follows_scan =
                            recorded != nullptr && recorded->motion == GripMotion::kFollowsScan;
                        return grip < grips.size() && grips[grip].nodes == first.nodes &&
@@ -103,7 +103,7 @@ Eigen::VectorXd ResidualWith(const CalibrationProblem& problem, size_t grip, dou
   } catch (const InputError&) {
     return {};  // for example, a marker is too far from this mesh
   }
-  return changed->Linearise(values, false, {}, nullptr, &near).residual;
+  return changed->Linearise(values, {.near = &near}).residual;
 }
 
 // The column of one grip: the change per metre by which it reaches further, with the parameters
@@ -131,8 +131,8 @@ Eigen::VectorXd ColumnOf(size_t grip, const PredictionStudy& study, const Nuisan
   std::vector<LinearPrior> priors = PriorsAbout(at.problem.parameters(), at.values);
   priors.push_back({0, 1, false});
   const Eigen::VectorXd fitted =
-      LinearGaussianModel(WhitenedRows(residual, at.misfit, 0, false),
-                          WhitenedRows(columns, at.misfit, 0, false), std::move(priors))
+      LinearGaussianModel(WhitenedRows(residual, at.misfit), WhitenedRows(columns, at.misfit),
+                          std::move(priors))
           .FitAll(1)
           .change;
   const double suggested = std::clamp(fitted[fitted.size() - 1], -kMostAmount, kMostAmount);

@@ -83,13 +83,13 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   NuisanceCandidate candidate;
   candidate.columns.resize(at.misfit.residual.size(), 0);
   for (const LinearisedMisfit::Part& part : at.misfit.parts) {
-    const Recording& recording = at.problem.models()[part.recording].item().recording;
+    const Recording& recording = at.problem.models()[part.recording].recording().recording;
     if (!part.IsOfPoints()) continue;
     for (const GripMotions::Grip& own : at.grips.grips) {
       const RecordedGrip* grip = RecordedAs(recording, own.grip);
       if (grip == nullptr || grip->motion != GripMotion::kFollowsMarkers) continue;
       if (part.layout.times.size() > kThresholds.nuisances.most_single_frames) {
-        candidate.left_out.push_back(at.problem.models()[part.recording].item().name);
+        candidate.left_out.push_back(at.problem.models()[part.recording].recording().name);
         break;
       }
       const std::vector<int> markers = MarkersOf(*grip, recording);

@@ -84,7 +84,7 @@ std::optional<FittedPair> FitPair(const BaselineModel& baseline, const ScoredVar
   const CalibrationProblem problem(study, baseline.problem.body()->mesh);
   const Eigen::VectorXd& values = refit.values_at_fit;
   const LinearisedMisfit misfit =
-      problem.Linearise(values, /*with_jacobian=*/false, {}, &baseline.misfit, &baseline.misfit);
+      problem.Linearise(values, {.correspondences = &baseline.misfit, .near = &baseline.misfit});
   if (!misfit.usable) return std::nullopt;
   const BaselineModel model{problem,
                             values,

@@ -98,7 +98,7 @@ PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::Vector
     const size_t at = static_cast<size_t>(k);
     const PredictionStudy changed = WithCandidate(study, candidates[at]);
     const CalibrationProblem pilot(changed, problem.body()->mesh);
-    runs[at] = pilot.Linearise(values, false, {}, &misfit, &misfit);
+    runs[at] = pilot.Linearise(values, {.correspondences = &misfit, .near = &misfit});
   });
   std::map<std::string, std::string> failed;
   for (size_t k = 0; k < candidates.size(); ++k) {

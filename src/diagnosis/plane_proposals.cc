@@ -116,8 +116,8 @@ void AddBody(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
       PointsNear(nodes, model.body->mesh.nodes, recording.observer().Places());
   const Eigen::Index points = recording.PointCount();
   std::vector<double> times;
-  for (const int frame : recording.item().frames)
-    times.push_back(recording.item().recording.times[frame] - recording.Delay(nuisance));
+  for (const int frame : recording.recording().frames)
+    times.push_back(recording.recording().recording.times[frame] - recording.Delay(nuisance));
   const Model placed = recording.PlacedModel(nuisance);
   const PredictionSummary summary = Predict(
       placed, recording.Options(nuisance), times, {}, [&](int frame, const PredictedState& state) {

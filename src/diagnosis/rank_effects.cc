@@ -103,9 +103,10 @@ void HypothesisScorer::ScoreNuisancesOfEveryModel() {
     nuisance.evidence = with.log_evidence - without.log_evidence;
     nuisance.explained = std::clamp(1 - with.misfit / without.misfit, 0.0, 1.0);
     if (all_.nuisances[k].unknown.cols() == 0) continue;
-    const LinearGaussianModel unknown = weighed_.all.WithResidual(
-        WhitenedRows(all_.nuisances[k].unknown, all_.misfit, all_.noise.correlation_time, false),
-        weighed_.columns);
+    const LinearGaussianModel unknown =
+        weighed_.all.WithResidual(WhitenedRows(all_.nuisances[k].unknown, all_.misfit,
+                                               {.correlation_time = all_.noise.correlation_time}),
+                                  weighed_.columns);
     nuisance.uncertain_evidence = 0.5 * unknown.Fit(all_.parameters, variance).misfit / variance;
   }
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -10,19 +11,14 @@
 namespace lacuna {
 namespace {
 
-bool HaveSameMarkers(const PredictedRecording& a, const PredictedRecording& b) {
-  const Markers &first = a.recording.markers, &second = b.recording.markers;
-  return a.scans == nullptr && b.scans == nullptr && first.names == second.names &&
-         first.places.cols() == second.places.cols() && first.places == second.places;
-}
-
 // Whether the markers of another fitted recording sit where those of `r` do.
 bool SharesMarkers(const CalibrationProblem& problem, size_t r) {
   const std::vector<RecordingModel>& models = problem.models();
-  if (models[r].Markers() == nullptr || models[r].PointCount() > kMostSharedMarkers) return false;
+  if (models[r].recording().ShowsScans() || models[r].PointCount() > kMostSharedMarkers)
+    return false;
   for (size_t other = 0; other < models.size(); ++other)
-    if (other != r && models[other].item().fitted &&
-        HaveSameMarkers(models[r].item(), models[other].item()))
+    if (other != r && models[other].recording().fitted &&
+        SameMarkers(models[r].recording(), models[other].recording()))
       return true;
   return false;
 }
@@ -43,10 +39,16 @@ PlaceErrors ErrorsOfPlaces(const CalibrationProblem& problem, LinearisedMisfit* 
       continue;
     const Eigen::Index components = part.layout.series;
     Eigen::Index first = -1;
-    for (const auto& [recording, column] : groups)
-      if (HaveSameMarkers(problem.models()[recording].item(),
-                          problem.models()[part.recording].item()))
-        first = column;
+    // For each marker its number in the recording whose markers the columns follow.
+    std::vector<int> order(static_cast<size_t>(components / 3));
+    std::iota(order.begin(), order.end(), 0);
+    for (const auto& [recording, column] : groups) {
+      const auto same = SameMarkers(problem.models()[part.recording].recording(),
+                                    problem.models()[recording].recording());
+      if (!same) continue;
+      first = column;
+      order = *same;
+    }
     if (first < 0) {
       first = errors.columns.cols();
       groups.emplace_back(part.recording, first);
@@ -60,9 +62,9 @@ PlaceErrors ErrorsOfPlaces(const CalibrationProblem& problem, LinearisedMisfit* 
         const size_t at = frame * static_cast<size_t>(components / 3) + static_cast<size_t>(point);
         if (part.layout.count[3 * at] == 0) continue;
         const Eigen::Index row = part.first_row + 3 * static_cast<Eigen::Index>(at);
-        errors.columns.block<3, 3>(row, first + 3 * point) = part.layout.deformation.empty()
-                                                                 ? Eigen::Matrix3d::Identity()
-                                                                 : part.layout.deformation[at];
+        errors.columns.block<3, 3>(row, first + 3 * order[static_cast<size_t>(point)]) =
+            part.layout.deformation.empty() ? Eigen::Matrix3d::Identity()
+                                            : part.layout.deformation[at];
       }
     }
     part.errors.common = 0;
@@ -85,7 +87,7 @@ Eigen::VectorXd TypicalChanges(const CalibrationProblem& problem, const Eigen::V
 std::vector<Eigen::Index> OwnParameters(const CalibrationProblem& problem, size_t recording) {
   Eigen::Index next = static_cast<Eigen::Index>(problem.study().fitted.size());
   for (size_t r = 0; r < problem.models().size(); ++r) {
-    if (!problem.models()[r].item().fitted) continue;
+    if (!problem.models()[r].recording().fitted) continue;
     std::vector<Eigen::Index> own;
     for (size_t k = 0; k < problem.models()[r].nuisances().size(); ++k) own.push_back(next++);
     if (r == recording) return own;
@@ -96,36 +98,37 @@ std::vector<Eigen::Index> OwnParameters(const CalibrationProblem& problem, size_
 }  // namespace
 
 AgreementRecord CompareRecordings(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                                  const LinearisedMisfit& linearised,
-                                  const AdoptedNuisances& nuisances, const NoiseLevel& noise) {
+                                  const LinearisedMisfit& misfit, const AdoptedNuisances& shared,
+                                  const NoiseLevel& noise) {
   AgreementRecord record;
   const Eigen::Index of_model = static_cast<Eigen::Index>(problem.study().fitted.size());
   std::vector<size_t> fitted;
   for (size_t r = 0; r < problem.models().size(); ++r)
-    if (problem.models()[r].item().fitted) fitted.push_back(r);
+    if (problem.models()[r].recording().fitted) fitted.push_back(r);
   if (fitted.size() < 2 || of_model == 0) return record;
 
-  LinearisedMisfit misfit;
-  misfit.residual = linearised.residual;
-  misfit.parts = linearised.parts;
-  const PlaceErrors places = ErrorsOfPlaces(problem, &misfit);
+  LinearisedMisfit independent;  // whose points have errors of their places of their own, if any
+  independent.residual = misfit.residual;
+  independent.parts = misfit.parts;
+  const PlaceErrors places = ErrorsOfPlaces(problem, &independent);
   const auto whiten = [&](const Eigen::MatrixXd& rows) {
-    return WhitenedRows(rows, misfit, noise.correlation_time, /*fitted_only=*/true);
+    return WhitenedRows(rows, independent,
+                        {.correlation_time = noise.correlation_time, .fitted_only = true});
   };
-  const Eigen::VectorXd residual = whiten(misfit.residual);
+  const Eigen::VectorXd residual = whiten(independent.residual);
   const Eigen::MatrixXd parameters =
-      whiten(linearised.jacobian.leftCols(static_cast<Eigen::Index>(problem.parameters().size())));
-  Eigen::MatrixXd shared(residual.size(), nuisances.columns.cols() + places.columns.cols());
-  shared << nuisances.columns, places.columns;
-  shared = whiten(shared);
-  std::vector<LinearPrior> shared_priors = nuisances.priors;
+      whiten(misfit.jacobian.leftCols(static_cast<Eigen::Index>(problem.parameters().size())));
+  Eigen::MatrixXd shared_columns(residual.size(), shared.columns.cols() + places.columns.cols());
+  shared_columns << shared.columns, places.columns;
+  shared_columns = whiten(shared_columns);
+  std::vector<LinearPrior> shared_priors = shared.priors;
   shared_priors.insert(shared_priors.end(), places.priors.begin(), places.priors.end());
   const std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
 
   std::vector<RecordingRows> recordings;
   for (const size_t r : fitted) {
     std::vector<Eigen::Index> rows;
-    for (const LinearisedMisfit::Part& part : misfit.parts)
+    for (const LinearisedMisfit::Part& part : independent.parts)
       if (part.recording == r)
         for (Eigen::Index row = 0; row < part.layout.Rows(); ++row)
           rows.push_back(part.first_row + row);
@@ -136,8 +139,8 @@ AgreementRecord CompareRecordings(const CalibrationProblem& problem, const Eigen
     recording.own = parameters(rows, own);
     for (const Eigen::Index column : own)
       recording.own_priors.push_back(priors[static_cast<size_t>(column)]);
-    recording.shared = shared(rows, Eigen::all);
-    record.recordings.push_back(problem.models()[r].item().name);
+    recording.shared = shared_columns(rows, Eigen::all);
+    record.recordings.push_back(problem.models()[r].recording().name);
   }
   const AgreementTest test = TestAgreement(
       recordings, shared_priors, TypicalChanges(problem, values, of_model), noise.variance);

@@ -38,12 +38,12 @@ UnknownEvidence UnknownEvidenceOf(const EffectRanking& ranking) {
 // The same for the step of `problem`; 0 where it cannot be told.
 double UnknownEvidenceOfStep(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                              const NoiseLevel& noise) {
-  const LinearisedMisfit misfit = problem.Linearise(values, /*with_jacobian=*/true);
+  const LinearisedMisfit misfit = problem.Linearise(values, {.with_jacobian = true});
   if (!misfit.usable) return 0;
   const std::optional<StepErrors> errors = FindStepErrors(problem, values, misfit);
   if (!errors) return 0;
   const auto whitened = [&](const Eigen::MatrixXd& rows) {
-    return WhitenedRows(rows, misfit, noise.correlation_time, /*fitted_only=*/false);
+    return WhitenedRows(rows, misfit, {.correlation_time = noise.correlation_time});
   };
   const LinearGaussianModel unknown(whitened(errors->Unknown()), whitened(misfit.jacobian),
                                     PriorsAbout(problem.parameters(), values));

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "calibration/linear_misfit.h"
@@ -13,47 +14,27 @@
 namespace lacuna {
 namespace {
 
-constexpr int kShapes = SmoothForce::kShapes;
 // The force may change within two frames, but in no more steps than this. More: faster changes in
 // long recordings, and a larger eigenvalue problem.
 constexpr int kMostKnots = 40;
-constexpr int kFewestFrames = 6;    // of the motion
 constexpr double kPersistence = 2;  // τ, in knots
 // Components of the response that are kept for each recording; those that follow change the
-// measurements by less than this share of the noise at the largest prior width, 10 m/s².
+// measurements by less than the share kLeastVisible of the noise where the amplitudes have the
+// standard deviation kStrongForce, about the acceleration of gravity: a model that lacks more than
+// the weight of the object fails in ways that need no such test.
 constexpr Eigen::Index kMostComponents = 40;
-constexpr double kLargestWidth = 10, kLeastVisible = 0.1;
-
-// L with L Lᵀ = exp(−|i − j| / kPersistence) between knots, for each of the six shapes.
-Eigen::MatrixXd PriorRoot(int knots) {
-  Eigen::MatrixXd correlation(knots, knots);
-  for (int i = 0; i < knots; ++i)
-    for (int j = 0; j < knots; ++j) correlation(i, j) = std::exp(-std::abs(i - j) / kPersistence);
-  const Eigen::MatrixXd in_time = correlation.llt().matrixL();
-  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(kShapes * knots, kShapes * knots);
-  for (int i = 0; i < knots; ++i)
-    for (int j = 0; j <= i; ++j)
-      for (int k = 0; k < kShapes; ++k) root(kShapes * i + k, kShapes * j + k) = in_time(i, j);
-  return root;
-}
+constexpr double kStrongForce = 10;  // m/s²
+constexpr double kLeastVisible = 0.1;
 
 // Changes of the predicted markers of all frames per unit of each knot's amplitudes, m.
 Eigen::MatrixXd ResponseOf(const RecordingModel& recording, const ReplayedMotion& motion,
                            const SmoothForce& field, const ReducedResponse& response) {
   const Eigen::Index markers = recording.PointCount();
-  const std::vector<int>& frames = recording.item().frames;
-  const auto histories = [&](double time) {
-    Eigen::MatrixXd amplitude = Eigen::MatrixXd::Zero(kShapes, field.amplitudes.size());
-    const SmoothForce::KnotWeight at = field.At(time);
-    for (int j = 0; j < kShapes; ++j) {
-      amplitude(j, kShapes * at.knot + j) = 1 - at.next;
-      amplitude(j, kShapes * (at.knot + 1) + j) = at.next;
-    }
-    return amplitude;
-  };
+  const std::vector<int>& frames = recording.recording().frames;
+  const auto histories = [&](double time) { return field.HatFunctions(time); };
   std::vector<double> times;
   for (const int frame : frames)
-    times.push_back(recording.item().recording.times[frame] - motion.delay);
+    times.push_back(recording.recording().recording.times[frame] - motion.delay);
   const Eigen::MatrixXd at_markers = recording.Markers()->rows() * response.basis();
   Eigen::MatrixXd columns(3 * markers * static_cast<Eigen::Index>(frames.size()),
                           field.amplitudes.size());
@@ -69,10 +50,10 @@ Eigen::MatrixXd ResponseOf(const RecordingModel& recording, const ReplayedMotion
 
 // Of the columns of one recording in all rows of the misfit, those combinations that could be seen.
 Eigen::MatrixXd VisibleComponents(const Eigen::MatrixXd& columns, const LinearisedMisfit& misfit) {
-  const Eigen::MatrixXd white = WhitenedRows(columns, misfit, 0, false);
+  const Eigen::MatrixXd white = WhitenedRows(columns, misfit);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
       Eigen::MatrixXd(white.transpose() * white));
-  const double least = std::pow(kLeastVisible / kLargestWidth, 2);
+  const double least = std::pow(kLeastVisible / kStrongForce, 2);
   const Eigen::Index visible =
       std::min<Eigen::Index>(kMostComponents, (eigen.eigenvalues().array() > least).count());
   return columns * eigen.eigenvectors().rightCols(visible);
@@ -84,23 +65,19 @@ Eigen::MatrixXd ColumnsOf(const CalibrationProblem& problem, const Eigen::Vector
                           const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part) {
   const Eigen::MatrixXd none(misfit.residual.size(), 0);
   const RecordingModel recording = problem.ModelAt(part.recording, values);
-  if (recording.Markers() == nullptr) return none;
+  if (recording.recording().ShowsScans()) return none;
   const ReplayedMotion motion = Replay(recording, problem.NuisanceOf(part.recording, values));
   if (!motion.summary.IsUsable()) return none;
-  const double start = motion.states.front().time, end = motion.states.back().time;
-  const std::vector<double>& times = recording.item().recording.times;
-  const auto moving = std::count_if(recording.item().frames.begin(), recording.item().frames.end(),
-                                    [&](int frame) { return times[frame] - motion.delay > start; });
-  if (moving < kFewestFrames) return none;
-  const SmoothForce field = MakeSmoothForce(recording.model(), start, end,
-                                            std::min(kMostKnots, static_cast<int>(moving)));
+  const std::optional<SmoothForce> field = SmoothForceDuring(recording, motion, kMostKnots);
+  if (!field) return none;
   const PredictionOptions options = recording.Options(motion.nuisance);
-  const ReducedResponse response(recording.model(), motion.states, field.Shapes(),
+  const ReducedResponse response(recording.model(), motion.states, field->Shapes(),
                                  {.scheme = options.step.scheme, .time_step = options.time_step});
   if (!response.IsUsable()) return none;
-  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(misfit.residual.size(), field.amplitudes.size());
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(misfit.residual.size(), field->amplitudes.size());
   own.middleRows(part.first_row, part.layout.Rows()) =
-      ResponseOf(recording, motion, field, response) * PriorRoot(field.KnotCount());
+      ResponseOf(recording, motion, *field, response) *
+      PersistentPriorRoot(field->KnotCount(), kPersistence);
   for (Eigen::Index row = 0; row < part.layout.Rows(); ++row)
     if (part.layout.count[static_cast<size_t>(row)] == 0) own.row(part.first_row + row).setZero();
   return VisibleComponents(own, misfit);

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "effects/catalogue.h"
 #include "fem/point_energy_effect.h"
@@ -120,8 +121,8 @@ class FibreStiffnessLaw {
                                .dimension = kAngle,
                                .bounds = kAnyValue,
                                .null_value = kNoNullValue,
-                               .plausible_min = -M_PI / 2,
-                               .plausible_max = M_PI / 2,
+                               .plausible_min = -std::numbers::pi / 2,
+                               .plausible_max = std::numbers::pi / 2,
                                .default_value = 0,
                                .trial = {.min = -1.2, .max = 1.2, .draw = 4}});
     card.parameters.push_back({.name = "inclination",
@@ -129,8 +130,8 @@ class FibreStiffnessLaw {
                                .dimension = kAngle,
                                .bounds = kAnyValue,
                                .null_value = kNoNullValue,
-                               .plausible_min = -M_PI / 2,
-                               .plausible_max = M_PI / 2,
+                               .plausible_min = -std::numbers::pi / 2,
+                               .plausible_max = std::numbers::pi / 2,
                                .default_value = 0,
                                .trial = {.min = -1.2, .max = 1.2, .draw = 5}});
     return card;

@@ -36,14 +36,9 @@ std::vector<char> FollowedByGrips(const Recording& recording, Eigen::Index rows)
 void SplitTracked(const Recording& recording, const Frame& frame, int hold_out_every,
                   FrameState* state) {
   const Eigen::Matrix3Xd points = PointsByRow(frame);
-  const std::vector<char> followed = FollowedByGrips(recording, points.cols());
-  std::vector<Eigen::Index> used, held_out;
-  for (Eigen::Index row = 0; row < points.cols(); ++row) {
-    const bool is_held_out = IsHeldOut(row, hold_out_every) && !followed[static_cast<size_t>(row)];
-    (is_held_out ? held_out : used).push_back(row);
-  }
-  state->tracked = points(Eigen::all, used);
-  state->held_out = points(Eigen::all, held_out);
+  const TrackedRows rows = SplitRows(recording, points.cols(), hold_out_every);
+  state->tracked = points(Eigen::all, rows.used);
+  state->held_out = points(Eigen::all, rows.held_out);
   std::vector<Eigen::Index> seen;
   for (Eigen::Index j = 0; j < state->tracked.cols(); ++j)
     if (state->tracked.col(j).allFinite()) seen.push_back(j);
@@ -87,6 +82,16 @@ Eigen::Matrix3Xd PointsByRow(const Frame& frame) {
   for (Eigen::Index j = 0; j < frame.cloud.Size(); ++j)
     points.col(frame.source_row[j]) = frame.cloud.points.col(j);
   return points;
+}
+
+TrackedRows SplitRows(const Recording& recording, Eigen::Index count, int hold_out_every) {
+  const std::vector<char> followed = FollowedByGrips(recording, count);
+  TrackedRows rows;
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const bool is_held_out = IsHeldOut(row, hold_out_every) && !followed[static_cast<size_t>(row)];
+    (is_held_out ? rows.held_out : rows.used).push_back(row);
+  }
+  return rows;
 }
 
 PointCloud StatePoints(const FrameState& state) {

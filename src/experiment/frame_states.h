@@ -31,6 +31,14 @@ struct FrameState {
 // The points of a tracked frame by row, 3 × rows, m; NaN where a row was not seen.
 Eigen::Matrix3Xd PointsByRow(const Frame& frame);
 
+// The rows of tracked points, ascending, as FrameState::tracked and ::held_out contain them.
+struct TrackedRows {
+  std::vector<Eigen::Index> used, held_out;
+};
+// Splits rows 0 … count − 1 of a tracked recording. Of every `hold_out_every` (0: none) rows the
+// last is held out, except markers that a grip follows, because they move the model.
+TrackedRows SplitRows(const Recording& recording, Eigen::Index count, int hold_out_every);
+
 // The points that represent the state in a registration: the surface's vertices or, without a
 // surface, the cloud.
 PointCloud StatePoints(const FrameState& state);
@@ -40,8 +48,7 @@ struct FrameStateOptions {
   FilterOptions filter;
   SurfaceOptions surface;
   bool surfaces = true;  // reconstruct a Poisson surface; otherwise the points represent the state
-  // Hold out every k-th tracked point; 0: none. Markers that a grip follows are never held out,
-  // because they move the model.
+  // Hold out every k-th tracked point (SplitRows); 0: none.
   int hold_out_every = 0;
 };
 
@@ -53,7 +60,8 @@ inline constexpr double kFarFromScan = 0.1;
 
 // Processes one frame of the recording. Throws InputError, which names the frame, where it cannot
 // be read, has no closed surface, or has one whose mean distance from the points is kFarFromScan.
-FrameState MakeFrameState(const Recording& recording, int frame, const FrameStateOptions& options);
+FrameState MakeFrameState(const Recording& recording, int frame_number,
+                          const FrameStateOptions& options);
 
 // The files of a run directory: arrays in .npy format, one set per frame, and notes.json.
 void SaveFrameStates(const std::vector<FrameState>& states, const std::filesystem::path& folder);

@@ -12,7 +12,7 @@
 #include "fem/grip_reaction.h"
 #include "fem/prescribed_force.h"
 #include "geometry/rounded_box.h"
-#include "scan/random_bits.h"
+#include "scan/normal_noise.h"
 #include "scan/scan_writer.h"
 
 namespace lacuna {
@@ -120,10 +120,6 @@ std::function<Eigen::Matrix3Xd(double)> Motion(const SceneGrip& grip,
 
 bool IsHeld(const SceneGrip& grip) { return grip.translation.norm() == 0 && grip.angle == 0; }
 
-Eigen::Matrix3Xd AsPoints(const Eigen::VectorXd& stacked) {
-  return Eigen::Map<const Eigen::Matrix3Xd>(stacked.data(), 3, stacked.size() / 3);
-}
-
 }  // namespace
 
 Scene ReadScene(const Config& config) {
@@ -217,8 +213,8 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
     Eigen::Vector3d load = Eigen::Vector3d::Zero();
     for (const SceneLoad& each : scene.loads) load += each.profile.At(history.time) * each.force;
     motion.times.push_back(frame / scene.frame_rate);
-    motion.positions.push_back(AsPoints(history.position));
-    motion.velocities.push_back(AsPoints(history.velocity));
+    motion.positions.push_back(history.position.reshaped(3, Eigen::AutoSize));
+    motion.velocities.push_back(history.velocity.reshaped(3, Eigen::AutoSize));
     motion.stress.push_back(RecoverNodalStress(model, history.position, history.velocity,
                                                history.time, history.effect_state));
     motion.load.push_back(load);
@@ -256,10 +252,12 @@ RecordedGrip DrivenGrip(const Scene& scene, const SceneGrip& grip) {
   return driven;
 }
 
+// The random streams of the noise of load cells: of their forces and of their torques.
+constexpr uint64_t kForceNoise = 80, kTorqueNoise = 81;
+
 // What the load cell of grip `number` of the scene reads in each frame: its force or its torque.
 MeasuredReaction LoadCellReading(const Scene& scene, const SceneMotion& motion, size_t number,
                                  size_t held, bool is_torque) {
-  const uint64_t stream = is_torque ? 81 : 80;
   const SceneGrip& grip = scene.grips[number];
   MeasuredReaction reading;
   reading.name = grip.region.name;
@@ -272,10 +270,11 @@ MeasuredReaction LoadCellReading(const Scene& scene, const SceneMotion& motion, 
                                                     static_cast<Eigen::Index>(motion.times.size()));
   reading.values = (is_torque ? motion.torques : motion.reactions)
                        .middleRows<3>(3 * static_cast<Eigen::Index>(number));
-  for (Eigen::Index k = 0; k < reading.values.size(); ++k)
-    reading.values.reshaped()[k] +=
-        reading.deviation *
-        Normal(RandomBits({scene.scanner->options.seed, stream, number, static_cast<uint64_t>(k)}));
+  AddNormalNoise(reading.deviation,
+                 {.seed = scene.scanner->options.seed,
+                  .stream = is_torque ? kTorqueNoise : kForceNoise,
+                  .number = number},
+                 reading.values);
   return reading;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/disjoint_sets.h"
+
 namespace lacuna {
 namespace {
 
@@ -116,14 +118,6 @@ struct Partition {
   std::vector<int> parent;        // parent of each supernode
 };
 
-int Find(std::vector<int>* representative, int s) {
-  while ((*representative)[s] != s) {
-    (*representative)[s] = (*representative)[(*representative)[s]];
-    s = (*representative)[s];
-  }
-  return s;
-}
-
 double TrapezoidEntries(double columns, double rows) {
   return 0.5 * columns * (columns + 1) + columns * rows;
 }
@@ -160,8 +154,7 @@ Partition FindSupernodes(const std::vector<int>& parent, const std::vector<int>&
     }
   }
 
-  std::vector<int> representative(supernodes);
-  std::iota(representative.begin(), representative.end(), 0);
+  DisjointSets merged_into(static_cast<size_t>(supernodes));  // represented by their topmost member
   std::vector<double> nonzero(supernodes);
   for (int s = 0; s < supernodes; ++s) nonzero[s] = TrapezoidEntries(columns[s], rows[s]);
   for (int child = 0; child < supernodes; ++child) {
@@ -170,7 +163,7 @@ Partition FindSupernodes(const std::vector<int>& parent, const std::vector<int>&
     const double merged = columns[child] + columns[p];
     const double entries = nonzero[child] + nonzero[p];
     if (!WorthMerging(merged, TrapezoidEntries(merged, rows[p]), entries)) continue;
-    representative[child] = p;
+    merged_into.MergeInto(child, p);
     columns[p] += columns[child];
     nonzero[p] = entries;
   }
@@ -178,14 +171,14 @@ Partition FindSupernodes(const std::vector<int>& parent, const std::vector<int>&
   std::vector<int> number(supernodes, -1);
   int kept = 0;
   for (int s = 0; s < supernodes; ++s) {
-    if (representative[s] == s) number[s] = kept++;
+    if (merged_into.Find(s) == s) number[s] = kept++;
   }
   std::vector<int> kept_parent(kept, -1);
   for (int s = 0; s < supernodes; ++s) {
-    if (representative[s] != s || partition.parent[s] < 0) continue;
-    kept_parent[number[s]] = number[Find(&representative, partition.parent[s])];
+    if (merged_into.Find(s) != s || partition.parent[s] < 0) continue;
+    kept_parent[number[s]] = number[merged_into.Find(partition.parent[s])];
   }
-  for (int& s : partition.supernode_of) s = number[Find(&representative, s)];
+  for (int& s : partition.supernode_of) s = number[merged_into.Find(s)];
   partition.parent = std::move(kept_parent);
   return partition;
 }

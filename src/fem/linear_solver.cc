@@ -81,7 +81,7 @@ struct LinearSolver::Implementation {
     }
   }
 
-  bool Factorise(const BlockMatrix& A);
+  bool Factorise(const BlockMatrix& coupled);
   bool FactoriseInDouble(const BlockMatrix& A);
   void ApplyFactor(const Eigen::VectorXd& r, Eigen::VectorXd* z);
   void MultiplyFree(const BlockMatrix& A, const Eigen::VectorXd& x, Eigen::VectorXd* y) const;
@@ -182,7 +182,7 @@ void LinearSolver::Implementation::SetRotation(const std::vector<Eigen::Matrix3d
   }
 }
 
-// Those of a new factor.
+// Sets the rotations of the nodes at which a new factor has been computed.
 void LinearSolver::Implementation::SetFactorRotations(
     const std::vector<Eigen::Matrix3d>* rotations) {
   rotation.clear();

@@ -68,17 +68,6 @@ NaturalModes FindNaturalModes(const Model& model, const Eigen::VectorXd& positio
     modes.message = "the stiffness is not positive semi-definite";
     return modes;
   }
-  const auto solve = [&](const Eigen::MatrixXd& right) {
-    Eigen::MatrixXd reduced(3 * order.FreeNodes(), right.cols()), solution;
-    for (int i = 0; i < order.FreeNodes(); ++i)
-      reduced.middleRows<3>(3 * i) = right.middleRows<3>(3 * order.node[static_cast<size_t>(i)]);
-    factor.Solve(reduced, &solution);
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(right.rows(), right.cols());
-    for (int i = 0; i < order.FreeNodes(); ++i)
-      all.middleRows<3>(3 * order.node[static_cast<size_t>(i)]) = solution.middleRows<3>(3 * i);
-    held.ClearIn(all);
-    return all;
-  };
 
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -86,7 +75,7 @@ NaturalModes FindNaturalModes(const Model& model, const Eigen::VectorXd& positio
       Eigen::MatrixXd::NullaryExpr(masses.size(), columns, [&] { return uniform(random); });
   Eigen::VectorXd last = Eigen::VectorXd::Zero(count);
   for (modes.iterations = 1; modes.iterations <= kMostIterations; ++modes.iterations) {
-    basis = solve(masses.asDiagonal() * basis);
+    basis = SolveFree(factor, order, held, masses.asDiagonal() * basis);
     const Eigen::MatrixXd mass = basis.transpose() * masses.asDiagonal() * basis;
     const Eigen::MatrixXd projected = basis.transpose() * (shifted * basis);
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(

@@ -2,67 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "fem/kept_factor_iteration.h"
 #include "fem/node_rotations.h"
 
 namespace lacuna {
 namespace {
-
-// An iterate with the quantities that have been evaluated at it.
-struct Iterate {
-  Eigen::VectorXd position;
-  Eigen::VectorXd residual;         // r − applied force; held components are 0
-  double force_scale = 0;           // N
-  std::optional<double> potential;  // J; NaN if there is none; evaluated on demand
-};
-
-// Steps −M⁻¹ r with a fixed factor M of a tangent, each combined with the earlier ones so that the
-// residual becomes smallest to first order, in the norm of M⁻¹ (Anderson 1965; for a linear
-// equation this is the method of minimal residuals, Walker & Ni 2011).
-class ChordSteps {
- public:
-  // The step from an iterate with residual r, where `image` is M⁻¹ r. The iterate is that to which
-  // the step before has led.
-  Eigen::VectorXd Next(const Eigen::VectorXd& residual, const Eigen::VectorXd& image) {
-    if (steps_.empty()) {
-      first_residual_ = residual.norm();
-    } else {
-      changes_.push_back(residual - residual_);
-      images_.push_back(image - image_);
-    }
-    residual_ = residual;
-    image_ = image;
-    // Minimises ‖r − Σ γ Δr‖, and steps by −M⁻¹ (r − Σ γ Δr) − Σ γ Δx.
-    const Eigen::Index count = static_cast<Eigen::Index>(steps_.size());
-    Eigen::MatrixXd products(count, count);
-    Eigen::VectorXd right(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      for (Eigen::Index j = 0; j <= i; ++j)
-        products(i, j) = products(j, i) = images_[i].dot(changes_[j]);
-      right[i] = images_[i].dot(residual);
-    }
-    const Eigen::VectorXd weight = products.ldlt().solve(right);
-    Eigen::VectorXd step = -image;
-    for (Eigen::Index i = 0; i < count; ++i) step += weight[i] * (images_[i] - steps_[i]);
-    steps_.push_back(step);
-    return step;
-  }
-
-  int Count() const { return static_cast<int>(steps_.size()); }
-  double FirstResidual() const { return first_residual_; }
-
- private:
-  std::vector<Eigen::VectorXd> steps_, changes_, images_;  // of the position, of r, and of M⁻¹ r
-  Eigen::VectorXd residual_, image_;
-  double first_residual_ = 0;
-};
 
 class Newton {
  public:
@@ -70,39 +22,45 @@ class Newton {
       : problem_(problem), solver_(*solver), tangent_(*tangent) {}
 
   NewtonSummary Run(const Eigen::VectorXd& target, Eigen::VectorXd* position) {
-    Iterate at;
-    if (IterateWithFactor(target, *position, &at)) {
-      *position = at.position;
-      return Finish(at);
-    }
-    at = Evaluate(*position);
-    if (MoveHeld(target, &at)) {
-      while (!IsConverged(at)) {
-        if (summary_.iterations >= problem_.max_iterations) {
-          Fail(NewtonSummary::Status::kNoConvergence,
-               fmt::format("no convergence in {} iterations", summary_.iterations));
-          break;
-        }
-        ++summary_.iterations;
-        if (!Advance(&at)) break;
-      }
+    NewtonIterate at;
+    if (std::optional<NewtonIterate> found = IterateWithKeptFactor(
+            problem_, target, *position, &solver_, &tangent_, &summary_.iterations)) {
+      at = *std::move(found);
+      summary_.status = NewtonSummary::Status::kConverged;
+    } else {
+      at = EvaluateIterate(problem_, *position);
+      if (MoveHeld(target, &at) && Iterate(&at))
+        summary_.status = NewtonSummary::Status::kConverged;
     }
     *position = at.position;
-    return Finish(at);
+    Eigen::Index worst = 0;
+    summary_.residual = at.residual.size() > 0 ? at.residual.cwiseAbs().maxCoeff(&worst) : 0;
+    if (!summary_.IsUsable()) {
+      summary_.message +=
+          fmt::format("; largest residual {:.3g} N at node {}", summary_.residual, worst / 3);
+    }
+    return summary_;
   }
 
  private:
-  Iterate Evaluate(const Eigen::VectorXd& position) const {
-    Iterate at;
-    at.position = position;
-    problem_.equation.Residual(position, &at.residual, &at.force_scale);
-    at.residual -= problem_.applied_force;
-    at.force_scale += problem_.applied_force.norm();
-    problem_.held.ClearIn(at.residual);
-    return at;
+  // Iterates to the solution. Returns false, with status and message, if that is not found.
+  bool Iterate(NewtonIterate* at) {
+    while (!IsConverged(*at)) {
+      if (summary_.iterations >= problem_.max_iterations) {
+        return Fail(NewtonSummary::Status::kNoConvergence,
+                    fmt::format("no convergence in {} iterations", summary_.iterations));
+      }
+      ++summary_.iterations;
+      if (!Advance(at)) return false;
+    }
+    return true;
   }
 
-  double Potential(Iterate* at) const {
+  NewtonIterate Evaluate(const Eigen::VectorXd& position) const {
+    return EvaluateIterate(problem_, position);
+  }
+
+  double Potential(NewtonIterate* at) const {
     if (!at->potential) {
       at->potential =
           problem_.equation.Potential(at->position) - problem_.applied_force.dot(at->position);
@@ -110,14 +68,13 @@ class Newton {
     return *at->potential;
   }
 
-  bool IsConverged(const Iterate& at) const {
-    const double norm = at.residual.norm();
-    if (!std::isfinite(norm) || !std::isfinite(at.force_scale)) return false;
-    return norm <= problem_.relative_tolerance * at.force_scale ||
-           (std::isfinite(rounding_) && norm <= rounding_);
+  bool IsConverged(const NewtonIterate& at) const {
+    return IsWithinTolerance(problem_, at) ||
+           (std::isfinite(rounding_) && std::isfinite(at.force_scale) &&
+            at.residual.norm() <= rounding_);
   }
 
-  void AssembleTangent(const Iterate& at) {
+  void AssembleTangent(const NewtonIterate& at) {
     problem_.equation.Tangent(at.position, convexify_, &tangent_);
     // Positions are rounded to ε |x|, and therefore forces to about ε |x| times the largest
     // stiffness. The smallest of these bounds over all iterates is used.
@@ -130,107 +87,54 @@ class Newton {
                                         std::sqrt(static_cast<double>(at.position.size())));
   }
 
-  Eigen::VectorXd WithHeldAt(const Eigen::VectorXd& target, Eigen::VectorXd position) const {
-    problem_.held.Copy(target, &position);
-    return position;
-  }
-
-  // Approaches the solution with the factor M of an earlier tangent, without assembling the present
-  // one, so that a step of a smooth motion costs little more than a few residuals. The factor is
-  // renewed once where that is cheaper than to go on. In statics a factor of a convexified tangent
-  // might lead to an unstable equilibrium, so that only steps with inertia are taken in this way.
-  // Returns false where the residual does not fall in spite of a new factor.
-  bool IterateWithFactor(const Eigen::VectorXd& target, const Eigen::VectorXd& start, Iterate* at) {
-    constexpr int kMostIterations = 16;
-    // The largest ratio of a new residual to the old one, with an old factor and with a new one.
-    constexpr double kSufficientRatio = 0.5, kTolerableRatio = 0.9;
-    if (!problem_.equation.has_inertia() || !solver_.KeepsFactors()) return false;
-    *at = Evaluate(WithHeldAt(target, start));
-    if (!at->residual.allFinite()) return false;
-    if (solver_.HasFactor()) rotations_ = NodeRotations(problem_.equation.body(), at->position);
-    ChordSteps steps;
-    bool is_new = false;
-    for (int iteration = 0; !IsConverged(*at); ++iteration) {
-      if (iteration == std::min(kMostIterations, problem_.max_iterations)) return false;
-      ++summary_.iterations;
-      if (!is_new && (!solver_.HasFactor() || IsRenewalCheaper(steps, *at))) {
-        if (!RenewFactor(*at)) return false;
-        is_new = true;
-        steps = {};
-      }
-      Eigen::VectorXd image;
-      solver_.ApplyFactor(at->residual, rotations_, &image);
-      Iterate next = Evaluate(at->position + steps.Next(at->residual, image));
-      const double ratio = next.residual.norm() / at->residual.norm();
-      if (ratio <= (is_new ? kTolerableRatio : kSufficientRatio)) {
-        *at = std::move(next);
-      } else if (is_new) {
-        return false;
-      } else {
-        solver_.DropFactor();
-      }
-    }
-    if (steps.Count() > 0) solver_.CountApplications(steps.Count());
-    return true;
-  }
-
-  bool IsRenewalCheaper(const ChordSteps& steps, const Iterate& at) const {
-    constexpr int kStepsToJudge = 2;
-    return steps.Count() >= kStepsToJudge &&
-           solver_.IsRenewalCheaper(steps.Count(), steps.FirstResidual(), at.residual.norm(),
-                                    problem_.relative_tolerance * at.force_scale);
-  }
-
-  bool RenewFactor(const Iterate& at) {
-    problem_.equation.Tangent(at.position, /*convexify=*/false, &tangent_);
-    rotations_ = NodeRotations(problem_.equation.body(), at.position);
-    return solver_.Factorise(tangent_, rotations_);
-  }
-
-  // Solves tangent · step = right() with the exact tangent or, if that is not positive definite,
-  // with its convexified approximation. right() may use the assembled tangent.
+  // The solution of tangent · step = right() with the exact tangent or, if that is not positive
+  // definite, with its convexified approximation. right() may use the assembled tangent. No value,
+  // and the reason in `*why`, if there is none.
   template <typename RightHandSide>
-  bool SolveLinearised(const Iterate& at, const RightHandSide& right, Eigen::VectorXd* step) {
+  std::optional<Eigen::VectorXd> SolveLinearised(const NewtonIterate& at,
+                                                 const RightHandSide& right, std::string* why) {
     LinearSolveSummary solved;
+    Eigen::VectorXd step;
     rotations_ = NodeRotations(problem_.equation.body(), at.position);
     for (int attempt = 0; attempt < 2; ++attempt) {
       AssembleTangent(at);
       const Eigen::VectorXd b = right();
-      solved = solver_.Solve(tangent_, b, step, &rotations_);
-      const bool is_descent = solved.IsUsable() && step->allFinite() && step->dot(b) >= 0;
+      solved = solver_.Solve(tangent_, b, &step, &rotations_);
+      const bool is_descent = solved.IsUsable() && step.allFinite() && step.dot(b) >= 0;
       has_tangent_ = is_descent && !convexify_;
-      if (is_descent) return true;
+      if (is_descent) return step;
       if (convexify_) break;
       convexify_ = true;
     }
-    Fail(NewtonSummary::Status::kLinearSolverFailed,
-         fmt::format("the linearised step could not be solved: {}", solved.message));
-    return false;
+    *why = fmt::format("the linearised step could not be solved: {}", solved.message);
+    return std::nullopt;
   }
 
   // Tries a step with the tangent of an earlier iterate (the chord method). Near the solution this
   // is nearly as effective as a new tangent, whose assembly costs more than a step. Returns false
   // and leaves `at` unchanged if the residual does not decrease enough.
-  bool FollowChord(Iterate* at) {
+  bool FollowChord(NewtonIterate* at) {
     constexpr double kSufficientRatio = 0.2;  // largest ratio of the new residual to the old one
     if (!has_tangent_ || convexify_) return false;
     has_tangent_ = false;
     Eigen::VectorXd step;
     const LinearSolveSummary solved = solver_.Solve(tangent_, -at->residual, &step, &rotations_);
     if (!solved.IsUsable() || !step.allFinite()) return false;
-    Iterate next = Evaluate(at->position + step);
+    NewtonIterate next = Evaluate(at->position + step);
     if (!(next.residual.norm() / at->residual.norm() <= kSufficientRatio)) return false;
     has_tangent_ = true;
     *at = std::move(next);
     return true;
   }
 
-  bool NewtonStep(const Iterate& at, Eigen::VectorXd* step) {
+  std::optional<Eigen::VectorXd> NewtonStep(const NewtonIterate& at, std::string* why) {
     return SolveLinearised(
-        at, [&] { return Eigen::VectorXd(-at.residual); }, step);
+        at, [&] { return Eigen::VectorXd(-at.residual); }, why);
   }
 
-  bool MoveHeld(const Eigen::VectorXd& target, Iterate* at) {
+  // Moves the held components to those of `target`, and the others as the linearised equation
+  // demands. Returns false, with status and message, if that cannot be solved.
+  bool MoveHeld(const Eigen::VectorXd& target, NewtonIterate* at) {
     Eigen::VectorXd motion = Eigen::VectorXd::Zero(target.size());
     problem_.held.Copy(target - at->position, &motion);
     if (motion.isZero(0)) return true;
@@ -244,9 +148,12 @@ class Newton {
         problem_.held.ClearIn(b);
         return b;
       };
-      if (!SolveLinearised(*at, right, &step)) return false;
+      std::string why;
+      std::optional<Eigen::VectorXd> solved = SolveLinearised(*at, right, &why);
+      if (!solved) return Fail(NewtonSummary::Status::kLinearSolverFailed, why);
+      step = *std::move(solved);
     }
-    *at = Evaluate(WithHeldAt(target, at->position + step + motion));
+    *at = Evaluate(WithHeldAt(problem_, target, at->position + step + motion));
     convexify_ = false;
     return true;
   }
@@ -255,14 +162,16 @@ class Newton {
   // curved valley. A full step along its tangent leads up the side of the valley, and the next full
   // step leads back to its bottom far ahead, whereas a line search would make little progress. An
   // increase is therefore accepted if the following full step ends below the start (the watchdog
-  // technique, Chamberlain et al. 1982).
-  bool Advance(Iterate* at) {
+  // technique, Chamberlain et al. 1982). Returns false, with status and message, if no step is
+  // found.
+  bool Advance(NewtonIterate* at) {
     if (FollowChord(at)) return true;
-    Eigen::VectorXd step;
-    if (!NewtonStep(*at, &step)) return false;
-    Iterate full = Evaluate(at->position + step);
-    const double slope = at->residual.dot(step);
-    const double work = Work(*at, full, step);
+    std::string why;
+    const std::optional<Eigen::VectorXd> step = NewtonStep(*at, &why);
+    if (!step) return Fail(NewtonSummary::Status::kLinearSolverFailed, why);
+    NewtonIterate full = Evaluate(at->position + *step);
+    const double slope = at->residual.dot(*step);
+    const double work = Work(*at, full, *step);
     if (Falls(at, &full, slope, work)) {
       *at = std::move(full);
       // Near the solution the exact tangent is definite and converges quadratically.
@@ -270,65 +179,87 @@ class Newton {
       may_climb_ = true;
       return true;
     }
-    if (may_climb_ && ReturnsBelow(at, slope, work, full)) {
-      *at = std::move(beyond_);
-      convexify_ = false;
-      return true;
+    if (may_climb_) {
+      if (std::optional<NewtonIterate> beyond = StepBelow(at, slope, work, full)) {
+        *at = *std::move(beyond);
+        convexify_ = false;
+        return true;
+      }
     }
     may_climb_ = false;
-    return SearchLine(at, step, full);
+    if (SearchLine(at, *step, slope, full)) return true;
+    return Fail(NewtonSummary::Status::kNoConvergence, "no descent along the Newton direction");
   }
 
-  // Takes another full step from `full`, where the potential exceeds that of `start`, to `beyond_`,
-  // and returns whether the potential there is below that of `start`. `work` is the work of the
-  // residual from `start` to `full`.
-  bool ReturnsBelow(Iterate* start, double slope, double work, const Iterate& full) {
-    if (!full.residual.allFinite() || summary_.iterations >= problem_.max_iterations) return false;
+  // Takes another full step from `full`, where the potential exceeds that of `start`. No value
+  // unless there is such a step and the potential at its end is below that of `start`. `slope` and
+  // `work` are the change of the potential to first order and the work of the residual from `start`
+  // to `full`, J.
+  std::optional<NewtonIterate> StepBelow(NewtonIterate* start, double slope, double work,
+                                         const NewtonIterate& full) {
+    if (!full.residual.allFinite() || summary_.iterations >= problem_.max_iterations)
+      return std::nullopt;
     ++summary_.iterations;
-    Eigen::VectorXd step;
-    if (!NewtonStep(full, &step)) {
-      summary_.status = NewtonSummary::Status::kNotRun;
-      return false;
-    }
-    beyond_ = Evaluate(full.position + step);
-    return Falls(start, &beyond_, slope, work + Work(full, beyond_, step));
+    std::string why;
+    const std::optional<Eigen::VectorXd> step = NewtonStep(full, &why);
+    if (!step) return std::nullopt;  // a line search from `start` follows
+    NewtonIterate beyond = Evaluate(full.position + *step);
+    if (!Falls(start, &beyond, slope, work + Work(full, beyond, *step))) return std::nullopt;
+    return beyond;
   }
 
   // The work of the residual along a step by the trapezoidal rule, J. It equals the change of the
   // potential to second order and replaces it if there is no potential.
-  static double Work(const Iterate& from, const Iterate& to, const Eigen::VectorXd& step) {
+  static double Work(const NewtonIterate& from, const NewtonIterate& to,
+                     const Eigen::VectorXd& step) {
     return 0.5 * (from.residual.dot(step) + to.residual.dot(step));
   }
 
   // Whether the potential decreases sufficiently (Armijo 1966) from one iterate to another.
   // `expected` is its change to first order, J.
-  bool Falls(Iterate* from, Iterate* to, double expected, double work) const {
+  bool Falls(NewtonIterate* from, NewtonIterate* to, double expected, double work) const {
     constexpr double kSufficient = 1e-4;
     // A decrease of the residual by this factor, along a step of a definite tangent, is sufficient.
     constexpr double kPlainlyBetter = 0.1;
+    // The same where the potential has too few digits to judge by.
+    constexpr double kBetter = 0.5;
+    // The rounding error of the potential, relative. Larger values judge more steps by the residual
+    // and its work; smaller ones by noise, which may refuse every step near the solution.
+    constexpr double kPotentialRounding = 1e-11;
     if (!to->residual.allFinite()) return false;
     const double ratio = to->residual.norm() / from->residual.norm();
     if (ratio <= kPlainlyBetter) return true;
     const double before = Potential(from);
     const double after = Potential(to);
     // A change below the rounding error of the potential is meaningless.
-    const double digits = 1e-11 * (std::abs(before) + std::abs(after));
+    const double digits = kPotentialRounding * (std::abs(before) + std::abs(after));
     if (std::isnan(after - before) || std::abs(expected) <= digits) {
-      return work <= kSufficient * expected || ratio < 0.5;
+      return work <= kSufficient * expected || ratio < kBetter;
     }
     return after - before <= kSufficient * expected;
   }
 
   // Shortens a step whose full length, which leads to `full`, does not decrease the potential.
-  bool SearchLine(Iterate* at, const Eigen::VectorXd& step, const Iterate& full) {
+  // `slope` is the change of the potential along the full step to first order, J. Leaves `at`
+  // unchanged where the next iteration shall try a convexified tangent. Returns false if no length
+  // decreases the potential.
+  bool SearchLine(NewtonIterate* at, const Eigen::VectorXd& step, double slope,
+                  const NewtonIterate& full) {
     constexpr int kMaxTrials = 30;
-    const double slope = at->residual.dot(step);
+    // The range of the ratio of a length to the one before, and the ratio where the slope does not
+    // change its sign. Smaller ratios reach short steps in fewer trials, but may skip longer ones.
+    constexpr double kLeastRatio = 0.1, kLargestRatio = 0.7, kPlainRatio = 0.5;
+    // A residual below this multiple of the rounding error is accepted as the solution where no
+    // descent can be found. Larger values accept less accurate solutions.
+    constexpr double kHidden = 100;
     double length = 1;
     double slope_there = full.residual.dot(step);
     for (int k = 0; k < kMaxTrials; ++k) {
-      // The zero of the slope by the secant rule, limited to a safe range.
-      length *= slope_there > 0 ? std::clamp(slope / (slope - slope_there), 0.1, 0.7) : 0.5;
-      Iterate trial = Evaluate(at->position + length * step);
+      // To the zero of the slope by the secant rule.
+      length *= slope_there > 0
+                    ? std::clamp(slope / (slope - slope_there), kLeastRatio, kLargestRatio)
+                    : kPlainRatio;
+      NewtonIterate trial = Evaluate(at->position + length * step);
       slope_there = trial.residual.dot(step);
       if (Falls(at, &trial, length * slope, length * Work(*at, trial, step))) {
         *at = std::move(trial);
@@ -340,29 +271,16 @@ class Newton {
       return true;
     }
     // Close to the solution, rounding errors can hide the descent.
-    if (at->residual.norm() <= 100 * rounding_) {
-      rounding_ = at->residual.norm();
-      return true;
-    }
-    Fail(NewtonSummary::Status::kNoConvergence, "no descent along the Newton direction");
-    return false;
+    if (!(at->residual.norm() <= kHidden * rounding_)) return false;
+    rounding_ = at->residual.norm();
+    return true;
   }
 
-  void Fail(NewtonSummary::Status status, const std::string& message) {
+  // Always returns false.
+  bool Fail(NewtonSummary::Status status, const std::string& message) {
     summary_.status = status;
     summary_.message = message;
-  }
-
-  NewtonSummary Finish(const Iterate& at) {
-    Eigen::Index worst = 0;
-    summary_.residual = at.residual.size() > 0 ? at.residual.cwiseAbs().maxCoeff(&worst) : 0;
-    if (summary_.status == NewtonSummary::Status::kNotRun) {
-      summary_.status = NewtonSummary::Status::kConverged;
-    } else {
-      summary_.message +=
-          fmt::format("; largest residual {:.3g} N at node {}", summary_.residual, worst / 3);
-    }
-    return summary_;
+    return false;
   }
 
   const NewtonProblem& problem_;
@@ -373,7 +291,6 @@ class Newton {
   bool may_climb_ = true;
   bool has_tangent_ = false;                // `tangent_` is exact for an earlier iterate
   std::vector<Eigen::Matrix3d> rotations_;  // rotations of the nodes at that iterate
-  Iterate beyond_;
   // Residuals below this norm, N, are rounding errors. Infinite until a tangent has been assembled.
   double rounding_ = std::numeric_limits<double>::infinity();
 };

@@ -2,36 +2,26 @@
 //
 // Solves r(x) = applied force for the free components, where r is the residual of the equation of
 // motion (step_equation.h). Steps with inertia are first tried with the kept factor of an earlier
-// tangent and Anderson's mixing, for which the present tangent is not assembled; most steps of a
-// smooth motion end there. Otherwise the tangent is exact, or a positive definite approximation
-// where the exact one is indefinite, and steps are globalised by a line search on the potential of
-// r, or on the work of r along the step if r has no potential.
+// tangent (kept_factor_iteration.h); most steps of a smooth motion end there. Otherwise the tangent
+// is exact, or a positive definite approximation where the exact one is indefinite, and steps are
+// globalised by a line search on the potential of r, or on the work of r along the step if r has no
+// potential.
 #ifndef LACUNA_FEM_NEWTON_H_
 #define LACUNA_FEM_NEWTON_H_
 
 #include <Eigen/Core>
 #include <string>
-#include <vector>
 
-#include "fem/held_components.h"
+#include "fem/block_matrix.h"
 #include "fem/linear_solver.h"
-#include "fem/step_equation.h"
+#include "fem/newton_problem.h"
 
 namespace lacuna {
-
-// The references must outlive the solution.
-struct NewtonProblem {
-  const StepEquation& equation;
-  const Eigen::VectorXd& applied_force;  // 3n, N
-  const HeldComponents& held;
-  double relative_tolerance = 0;  // bound on ‖r − applied‖ relative to the acting forces
-  int max_iterations = 0;
-};
 
 struct NewtonSummary {
   enum class Status { kNotRun, kConverged, kNoConvergence, kLinearSolverFailed };
   Status status = Status::kNotRun;
-  std::string message;
+  std::string message;  // why there is no convergence; empty where there is
   int iterations = 0;   // of both kinds
   double residual = 0;  // ‖r − applied‖∞ over the free components, N
   bool IsUsable() const { return status == Status::kConverged; }

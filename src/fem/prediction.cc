@@ -79,14 +79,14 @@ class Visits {
     while (AreLeft() && NextTime() <= end) {
       const double t = length > 0 ? 1 - (end - NextTime()) / length : 1;
       const auto state = length > 0 ? Interpolate(from.state, to.state, length, t) : to.state;
-      const auto jacobian =
-          length > 0 ? Interpolate(from.jacobian, to.jacobian, length, t) : to.jacobian;
+      const Eigen::MatrixXd jacobian =
+          length > 0 ? InterpolatePosition(from.jacobian, to.jacobian, length, t)
+                     : to.jacobian.position;
       const Eigen::VectorXd reaction = (1 - t) * from.reaction + t * to.reaction;
       const Eigen::MatrixXd reaction_jacobian =
           (1 - t) * from.reaction_jacobian + t * to.reaction_jacobian;
-      visit_(static_cast<int>(next_),
-             {NextTime(), state.position, state.velocity, jacobian.position, jacobian.velocity,
-              reaction, rate, reaction_jacobian});
+      visit_(static_cast<int>(next_), {NextTime(), state.position, state.velocity, jacobian,
+                                       reaction, rate, reaction_jacobian});
       summary_.states = static_cast<int>(++next_);
     }
   }

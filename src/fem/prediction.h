@@ -43,14 +43,13 @@ struct PredictionOptions {
   std::vector<Reaction> reactions = {};  // the forces and torques of grips that are wanted
 };
 
-// The motion at a requested time. The Jacobians with respect to the perturbations are 3n ×
-// perturbations, in m and m/s per unit of each. All references are valid during the visit only.
+// The motion at a requested time. The Jacobian with respect to the perturbations is 3n ×
+// perturbations, in m per unit of each. All references are valid during the visit only.
 struct PredictedState {
   double time = 0;  // s
   const Eigen::VectorXd& position;
   const Eigen::VectorXd& velocity;
   const Eigen::MatrixXd& position_jacobian;
-  const Eigen::MatrixXd& velocity_jacobian;
   // Each of PredictionOptions::reactions (three rows each, N or N m), its rate (per s) and its
   // Jacobian (per unit).
   const Eigen::VectorXd& reaction;

@@ -56,9 +56,9 @@ class TangentsAlong {
       if ((factorised = factor_.Factorise(held_.Decoupled(matrix_)))) break;
     }
     if (!factorised) return std::nullopt;
-    const Eigen::MatrixXd first = SolveFree(right);
+    const Eigen::MatrixXd first = SolveFree(factor_, order_, held_, right);
     Eigen::MatrixXd both(right.rows(), 2 * right.cols());
-    both << first, SolveFree(Massed(body, first));
+    both << first, SolveFree(factor_, order_, held_, Massed(body, first));
     return both;
   }
 
@@ -72,18 +72,6 @@ class TangentsAlong {
           {*model_.body, state.position, state.velocity, no_acceleration, state.time, time_step_,
            state.effect_state[j], ElasticityOf(model_), has_inertia_},
           negative, convexify, &matrix_);
-  }
-
-  Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& right) {
-    Eigen::MatrixXd reduced(3 * order_.FreeNodes(), right.cols()), solution;
-    for (int i = 0; i < order_.FreeNodes(); ++i)
-      reduced.middleRows<3>(3 * i) = right.middleRows<3>(3 * order_.node[i]);
-    factor_.Solve(reduced, &solution);
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(right.rows(), right.cols());
-    for (int i = 0; i < order_.FreeNodes(); ++i)
-      all.middleRows<3>(3 * order_.node[i]) = solution.middleRows<3>(3 * i);
-    held_.ClearIn(all);
-    return all;
   }
 
   const Model& model_;

@@ -119,13 +119,6 @@ bool StepEquation::SkewTangent(const Eigen::VectorXd& position, BlockMatrix* tan
   return any;
 }
 
-void StepEquation::ParameterDerivative(const Eigen::VectorXd& position, int effect, int parameter,
-                                       Eigen::VectorXd* derivative) const {
-  derivative->setZero(position.size());
-  AddParameterForce(End(position), effect, parameter, derivative);
-  *derivative *= -1;
-}
-
 void StepEquation::AddParameterForce(const EndOfStep& end, int effect, int parameter,
                                      Eigen::VectorXd* force) const {
   model_.effects[effect]->AddParameterDerivative(At(end, effect), parameter, force);

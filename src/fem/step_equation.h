@@ -56,9 +56,6 @@ class StepEquation {
   void Tangent(const Eigen::VectorXd& position, bool convexify, BlockMatrix* tangent) const;
   // Overwrites `tangent` with the skew-symmetric part; returns false if it is zero.
   bool SkewTangent(const Eigen::VectorXd& position, BlockMatrix* tangent) const;
-  // Overwrites `derivative` with ∂r/∂p for a parameter p of an effect, N per unit of the parameter.
-  void ParameterDerivative(const Eigen::VectorXd& position, int effect, int parameter,
-                           Eigen::VectorXd* derivative) const;
   // The potential whose gradient is r, J: inertial terms plus the potentials of the effects. NaN if
   // an effect has no potential.
   double Potential(const Eigen::VectorXd& position) const;

@@ -243,24 +243,11 @@ struct TangentLinear::Implementation {
     if (has_skew) group.Of(right) -= skew * gripped;
   }
 
-  // Solves tangent · s = right for the free components with the current factor; those that are
-  // held are 0.
-  Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& of_all) {
-    Eigen::MatrixXd reduced(3 * order.FreeNodes(), of_all.cols()), solution;
-    for (int i = 0; i < order.FreeNodes(); ++i)
-      reduced.middleRows<3>(3 * i) = of_all.middleRows<3>(3 * order.node[i]);
-    factor.Solve(reduced, &solution);
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(of_all.rows(), of_all.cols());
-    for (int i = 0; i < order.FreeNodes(); ++i)
-      all.middleRows<3>(3 * order.node[i]) = solution.middleRows<3>(3 * i);
-    held.ClearIn(all);
-    return all;
-  }
-
-  // Solves (tangent + skew) · s = right at the free nodes with the factor of the tangent.
+  // Solves (tangent + skew) · s = right at the free nodes with the factor of the tangent. No value
+  // if the iteration does not converge.
   std::optional<Eigen::MatrixXd> SolveByTangent(const Group& group) {
     Eigen::MatrixXd wanted = group.Of(right);
-    if (!has_skew) return SolveFree(wanted);
+    if (!has_skew) return SolveFree(factor, order, held, wanted);
     held.ClearIn(wanted);
     // The contribution of the skew part changes little from one step to the next.
     Eigen::MatrixXd expected = 2 * group.Of(position) - group.Of(previous_position);
@@ -271,7 +258,8 @@ struct TangentLinear::Implementation {
                    });
   }
 
-  // The same with the factor of the convexified approximation.
+  // Solves (tangent + skew) · s = right at the free nodes with the factor of the convexified
+  // approximation.
   std::optional<Eigen::MatrixXd> SolveByStandIn(const Group& group) {
     Eigen::MatrixXd wanted = group.Of(right);
     held.ClearIn(wanted);
@@ -292,7 +280,7 @@ struct TangentLinear::Implementation {
     held.ClearIn(residual);
     double last = residual.norm();
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-      const Eigen::MatrixXd step = SolveFree(residual);
+      const Eigen::MatrixXd step = SolveFree(factor, order, held, residual);
       solution += step;
       update(step, &residual);
       held.ClearIn(residual);
@@ -303,7 +291,8 @@ struct TangentLinear::Implementation {
     return std::nullopt;
   }
 
-  // The same with the factor of the whole tangent.
+  // Solves (tangent + skew) · s = right at the free nodes with the factor of the whole matrix. No
+  // value if the residual exceeds the tolerance.
   std::optional<Eigen::MatrixXd> SolveByWhole(const UnsymmetricFactor& whole, const Group& group) {
     Eigen::MatrixXd wanted = group.Of(right);
     held.ClearIn(wanted);

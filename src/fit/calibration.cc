@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "fit/bounded_descent.h"
@@ -18,6 +19,9 @@ using Verdict = ParameterEstimate::Verdict;
 // deviations cannot be distinguished from no change.
 constexpr double kNoticeable = 2;
 constexpr double kDead = 1e-6;
+// A parameter is at its bound within this share of a typical change, plus of its own value where it
+// is fitted on a linear scale.
+constexpr double kAtBoundWithin = 1e-6;
 // Errors with a longer memory cannot be distinguished from motion.
 constexpr double kLongestMemory = 0.9;
 
@@ -119,10 +123,17 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Predicti
     }
     // How far a typical change moves the residual vector, in standard deviations.
     const double influence = J.col(k).norm() * parameter.typical / calibration->inflation;
-    const double width = std::abs(value) + parameter.typical;
+    // How near a bound is, on the scale on which the parameter is fitted.
+    const double free = ToFree(parameter, value);
+    const double above_min = parameter.log_scale && parameter.min <= 0
+                                 ? std::numeric_limits<double>::infinity()
+                                 : free - ToFree(parameter, parameter.min);
+    const double below_max = ToFree(parameter, parameter.max) - free;
+    const double close =
+        kAtBoundWithin * (parameter.typical + (parameter.log_scale ? 0 : std::abs(value)));
     if (influence < kDead) {
       estimate.verdict = Verdict::kDead;
-    } else if (value - parameter.min < 1e-6 * width || parameter.max - value < 1e-6 * width) {
+    } else if (above_min < close || below_max < close) {
       estimate.verdict = Verdict::kAtBound;
     } else if (influence < kNoticeable) {
       estimate.verdict = Verdict::kFlat;

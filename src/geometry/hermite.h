@@ -11,16 +11,23 @@ struct Knot {
   Matrix position, velocity;
 };
 
-// The value and the velocity of the cubic that interpolates positions and velocities of two knots,
-// `h` > 0 apart in time, at the fraction t ∈ [0, 1] of the interval:
+// The value of the cubic that interpolates positions and velocities of two knots, `h` > 0 apart in
+// time, at the fraction t ∈ [0, 1] of the interval:
 //   x(t) = (1 + 2t)(1 − t)² x₀ + t²(3 − 2t) x₁ + h (t (1 − t)² v₀ − t² (1 − t) v₁).
+template <typename Matrix>
+Matrix InterpolatePosition(const Knot<Matrix>& from, const Knot<Matrix>& to, double h, double t) {
+  const double s = 1 - t;
+  return (1 + 2 * t) * s * s * from.position + t * t * (3 - 2 * t) * to.position +
+         h * (t * s * s * from.velocity - t * t * s * to.velocity);
+}
+
+// The value and the velocity of the same cubic.
 template <typename Matrix>
 Knot<Matrix> Interpolate(const Knot<Matrix>& from, const Knot<Matrix>& to, double h, double t) {
   const double s = 1 - t;
-  return {(1 + 2 * t) * s * s * from.position + t * t * (3 - 2 * t) * to.position +
-              h * (t * s * s * from.velocity - t * t * s * to.velocity),
-          6 * t * s / h * (to.position - from.position) + s * (1 - 3 * t) * from.velocity +
-              t * (3 * t - 2) * to.velocity};
+  return {InterpolatePosition(from, to, h, t), 6 * t * s / h * (to.position - from.position) +
+                                                   s * (1 - 3 * t) * from.velocity +
+                                                   t * (3 * t - 2) * to.velocity};
 }
 
 // The velocity at the middle one of three points, of the parabola through them, from the mean

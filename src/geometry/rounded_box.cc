@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <tuple>
 #include <vector>
 
@@ -17,17 +18,20 @@ namespace {
 std::vector<double> SideCoordinates(double size, double radius, double edge_length) {
   std::vector<double> coordinates;
   const int arc =
-      radius > 0 ? std::max(2, static_cast<int>(std::ceil(0.5 * M_PI * radius / edge_length))) : 0;
+      radius > 0
+          ? std::max(2, static_cast<int>(std::ceil(0.5 * std::numbers::pi * radius / edge_length)))
+          : 0;
   const double flat = size - 2 * radius;
   const int middle = flat > 0 ? std::max(1, static_cast<int>(std::round(flat / edge_length))) : 0;
   // A point of the box at depth t inside the rounded zone is pushed out along the direction from
   // the inner box; tangents of evenly spaced angles, up to the corner's 45°, give even arcs.
   for (int i = 0; i < arc; ++i)
-    coordinates.push_back(-0.5 * flat - radius * std::tan(0.25 * M_PI * (arc - i) / arc));
+    coordinates.push_back(-0.5 * flat -
+                          radius * std::tan(0.25 * std::numbers::pi * (arc - i) / arc));
   for (int i = 0; i <= middle; ++i)
     coordinates.push_back(flat * (middle > 0 ? static_cast<double>(i) / middle - 0.5 : 0));
   for (int i = 1; i <= arc; ++i)
-    coordinates.push_back(0.5 * flat + radius * std::tan(0.25 * M_PI * i / arc));
+    coordinates.push_back(0.5 * flat + radius * std::tan(0.25 * std::numbers::pi * i / arc));
   return coordinates;
 }
 

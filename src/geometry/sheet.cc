@@ -93,11 +93,4 @@ TetMesh ThickenToTets(const TriMesh& sheet, double thickness, int layers, SheetP
   return mesh;
 }
 
-ThickSheet ThickenSheet(const TriMesh& sheet, double thickness, SheetPosition position) {
-  const BoundarySurface boundary = ExtractBoundary(ThickenToTets(sheet, thickness, 1, position));
-  const int vertex_count = static_cast<int>(sheet.vertices.cols());
-  CHECK_EQ(boundary.node.size(), 2 * vertex_count);
-  return {boundary.surface, boundary.node.unaryExpr([=](int n) { return n % vertex_count; })};
-}
-
 }  // namespace lacuna

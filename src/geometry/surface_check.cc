@@ -6,32 +6,15 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <tuple>
+
+#include "core/disjoint_sets.h"
+#include "core/first_few.h"
 
 namespace lacuna {
 namespace {
 
 using Eigen::Vector3d;
-
-// A partition of the integers 0 … count − 1 into sets that can be merged (union-find).
-class DisjointSets {
- public:
-  explicit DisjointSets(size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int Find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void Merge(int i, int j) {
-    const int root_i = Find(i), root_j = Find(j);
-    parent_[std::max(root_i, root_j)] = std::min(root_i, root_j);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 // A triangle's edge from corner k to corner k + 1, as the pair of its vertices.
 struct HalfEdge {
@@ -216,13 +199,10 @@ std::string Place(const Vector3d& place) {
 
 // "3 × non-manifold edge at (…), (…), (…)"
 void DescribePlaces(const char* what, const Places& places, std::vector<std::string>& faults) {
-  constexpr size_t kShown = 3;
   if (places.empty()) return;
-  std::string text = fmt::format("{} × {} at ", places.size(), what);
-  for (size_t i = 0; i < std::min(places.size(), kShown); ++i) {
-    text += (i > 0 ? ", " : "") + Place(places[i]);
-  }
-  faults.push_back(text + (places.size() > kShown ? ", …" : ""));
+  std::vector<std::string> shown;
+  for (const Vector3d& place : places) shown.push_back(Place(place));
+  faults.push_back(fmt::format("{} × {} at {}", places.size(), what, FirstFew(shown)));
 }
 
 }  // namespace

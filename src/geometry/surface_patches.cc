@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "core/parallel.h"
@@ -73,7 +74,7 @@ SurfacePatches DivideSurface(const TriMesh& surface, int count) {
   const PointCloud samples =
       EvaluateSamples(surface, SampleSurface(surface, kSamplesPerPatch * count, kSeed));
   SurfacePatches patches;
-  patches.width = std::sqrt(TriangleAreas(surface).sum() / (M_PI * count));
+  patches.width = std::sqrt(TriangleAreas(surface).sum() / (std::numbers::pi * count));
   SpreadCentres(samples, count, &patches);
   for (int k = 0; k < kIterations; ++k) CentreOnSamples(samples, &patches);
   return patches;

@@ -22,7 +22,7 @@ struct SurfacePatches {
   int Count() const { return static_cast<int>(place.cols()); }
   // The number of the patch to which a point at rest (m, finite) with a unit normal belongs; the
   // first of several equally near patches.
-  int PatchOf(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;
+  int PatchOf(const Eigen::Vector3d& point, const Eigen::Vector3d& at_normal) const;
 };
 
 // Divides the closed surface into `count` > 0 patches (CHECK), by farthest-point sampling of random

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "core/json_number.h"
@@ -104,8 +105,8 @@ double SwingFrequency(const std::vector<DropState>& flight) {
     double re = 0, im = 0;
     for (size_t k = 0; k < flight.size(); ++k) {
       const auto place = static_cast<double>(k);
-      const double window = 0.5 - 0.5 * std::cos(2 * M_PI * (place + 0.5) / count);
-      const double angle = 2 * M_PI * frequency * step * place;
+      const double window = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * (place + 0.5) / count);
+      const double angle = 2 * std::numbers::pi * frequency * step * place;
       re += window * (flight[k].height - mean) * std::cos(angle);
       im += window * (flight[k].height - mean) * std::sin(angle);
     }

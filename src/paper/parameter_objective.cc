@@ -40,9 +40,8 @@ std::shared_ptr<const Effect> WithModuli(const Effect& material, double young_mo
 ReferenceBody MakeTurnedBody(const ParameterObjective& problem, const ReconstructionStudy& study) {
   TriMesh surface = problem.states.front().surface;
   if (problem.remesh_surface) {
-    RemeshOptions options;
-    options.edge_length = std::cbrt(6 * std::sqrt(2.0) * study.mesh.tets.max_volume);  // V = a³/6√2
-    surface = RemeshIsotropic(surface, options);
+    // V = a³/6√2
+    surface = RemeshIsotropic(surface, std::cbrt(6 * std::sqrt(2.0) * study.mesh.tets.max_volume));
   }
   const Eigen::Vector3d centre = surface.vertices.rowwise().mean();
   const Eigen::Matrix3d turn =

@@ -22,10 +22,11 @@ namespace {
 constexpr double kTurnStep = 1e-3;    // rad, between one seed's mesh and the next
 constexpr double kStartSpread = 0.1;  // share of a variable's range, either way
 // Raised whenever a change of the code changes |D_anim| for the same recording: by the surfaces,
-// the registration, the mesh, FollowFrames or the measures. kStatesVersion, kReferenceVersion and
-// kMotionVersion in reconstruction/reconstruction.cc are those of the same code in a
-// reconstruction: a change that raises one of them raises this one too.
-constexpr int kObjectiveVersion = 3;
+// the registration, the mesh, FollowFrames or the measures. kReferenceBodyVersion
+// (experiment/reference_body_stage.cc), kStatesVersion and kMotionVersion
+// (reconstruction/reconstruction.cc) are those of the same code in a reconstruction: a change of
+// scans that raises one of them raises this one too.
+constexpr int kObjectiveVersion = 4;
 constexpr double kFactors[] = {0.25, 0.5, 1, 2, 4};
 
 // The recording of a seed, and the scene's motion where one has to be scanned.

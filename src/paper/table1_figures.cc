@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "analysis/measure.h"
 #include "core/atomic_file.h"
@@ -22,7 +23,7 @@ namespace {
 
 const Eigen::Vector3d kScanColour(0.15, 0.2, 0.3), kFaintColour(0.74, 0.78, 0.84),
     kSkinColour(0.62, 0.72, 0.84), kInnerColour(0.95, 0.72, 0.42), kRemovedColour(0.85, 0.15, 0.1);
-constexpr double kDeg = 180 / M_PI;
+constexpr double kDeg = 180 / std::numbers::pi;
 
 ParameterObjective ProblemOf(const Table1Study& table1, const Table1Scans& scans) {
   const ParameterSearchSettings& search = table1.configurations.front().search;
@@ -72,7 +73,8 @@ std::vector<Optimum> ReadOptima(const Table1Study& table1, const std::filesystem
   return optima;
 }
 
-FollowedMotion Followed(const ParameterObjective& problem, const SearchedParameters& parameters) {
+FollowedMotion FollowOrThrow(const ParameterObjective& problem,
+                             const SearchedParameters& parameters) {
   FollowedMotion motion =
       FollowForObjective(problem, parameters, MakeObjectiveBody(problem, parameters));
   const FollowedFrame& last = motion.frames.back();
@@ -277,7 +279,7 @@ FigureContent DrawBend(const Table1Study& table1, const Table1Scans& scans,
       "frame   time s   registered mean / max    simulated mean / max    distance mean\n";
   const ParameterObjective problem = ProblemOf(table1, scans);
   const SearchedParameters parameters = ReferenceParameters(table1);
-  const FollowedMotion motion = Followed(problem, parameters);
+  const FollowedMotion motion = FollowOrThrow(problem, parameters);
   const BoundarySurface& boundary = motion.body->boundary;
   const Eigen::Matrix3Xd& at_rest = scans.tracked.points;
   const double size = BoundingBoxDiagonal(at_rest);
@@ -348,7 +350,7 @@ FigureContent DrawAlignment(const Table1Study& table1, const Table1Scans& scans,
   for (const Optimum& optimum : optima) {
     const ParameterObjective problem = ProblemOf(table1, scans);
     const SearchedParameters& p = optimum.parameters;
-    const FollowedMotion motion = Followed(problem, p);
+    const FollowedMotion motion = FollowOrThrow(problem, p);
     const ObjectiveEvaluation again = MeasureObjective(problem, motion);
     figure.text += fmt::format(
         "{:12} {:5.3f}  {:8.1f}  {:7.1f}  {:5.3f}  {:6}   {:.4f} ({:.4f})    ", optimum.name,

@@ -47,7 +47,7 @@ std::string Range(const SeedRange& range, const char* format, double scale = 1) 
                      number(range.largest));
 }
 
-std::string Verdict(bool holds) { return holds ? "holds" : "does not hold"; }
+std::string HoldsText(bool holds) { return holds ? "holds" : "does not hold"; }
 
 void AppendSearches(const Table1Study& study, const Table1Result& result, std::string* text) {
   *text += fmt::format(
@@ -151,16 +151,16 @@ void AppendClaims(const Table1Study& study, const Table1Summary& summary, std::s
         row.name,
         std::isnan(summary.mesh_noise)
             ? "mesh noise not measured"
-            : Verdict(row.with_start == summary.seeds &&
-                      row.drop_from_start.least > 2 * summary.mesh_noise));
+            : HoldsText(row.with_start == summary.seeds &&
+                        row.drop_from_start.least > 2 * summary.mesh_noise));
     if (row.with_start < summary.seeds)
       *text += fmt::format("  ({} of {} seeds have a start and a best point to compare)\n",
                            row.with_start, summary.seeds);
     const auto& paper = study.configurations[c].paper_drop;
     if (!paper) continue;
     *text += fmt::format("- {} drops by at least {:.1f} % (median): {} per point, {} as a sum\n",
-                         row.name, Percent(*paper), Verdict(row.drop_from_max.median >= *paper),
-                         Verdict(row.sum_drop.median >= *paper));
+                         row.name, Percent(*paper), HoldsText(row.drop_from_max.median >= *paper),
+                         HoldsText(row.sum_drop.median >= *paper));
   }
   *text += fmt::format("- {} does at least as well as the better of the others: {} of {} seeds\n",
                        summary.rows.back().name, summary.last_is_best, summary.compared);

@@ -18,22 +18,58 @@ namespace {
 // the largest eigenvalue of its scaled precision.
 constexpr double kUndetermined = 1e-12;
 
-// A draw from N(mean, covariance) with the precision P and P mean = right.
-Eigen::VectorXd DrawNormal(const Eigen::MatrixXd& precision, const Eigen::VectorXd& right,
-                           uint64_t seed, uint64_t number) {
+// N(mean, root rootᵀ)
+struct NormalDistribution {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd root;
+};
+
+// The distribution with the precision P and P mean = right.
+NormalDistribution FromPrecision(const Eigen::MatrixXd& precision, const Eigen::VectorXd& right) {
   const Eigen::VectorXd unit =
       precision.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
       Eigen::MatrixXd(unit.asDiagonal() * precision * unit.asDiagonal()));
-  const Eigen::VectorXd along = eigen.eigenvectors().transpose() * (unit.asDiagonal() * right);
-  Eigen::VectorXd amounts = Eigen::VectorXd::Zero(right.size());
+  Eigen::VectorXd spread = Eigen::VectorXd::Zero(right.size());
   for (Eigen::Index k = 0; k < right.size(); ++k) {
     const double value = eigen.eigenvalues()[k];
-    if (value <= kUndetermined * eigen.eigenvalues().maxCoeff()) continue;
-    const double normal = Normal(RandomBits({seed, number, static_cast<uint64_t>(k)}));
-    amounts[k] = along[k] / value + normal / std::sqrt(value);
+    if (value > kUndetermined * eigen.eigenvalues().maxCoeff()) spread[k] = 1 / std::sqrt(value);
   }
-  return unit.asDiagonal() * (eigen.eigenvectors() * amounts);
+  NormalDistribution normal;
+  normal.root = unit.asDiagonal() * eigen.eigenvectors() * spread.asDiagonal();
+  normal.mean = normal.root * (normal.root.transpose() * right);
+  return normal;
+}
+
+// A draw from the standard normal distribution truncated to values of at least `least` (Robert,
+// Simulation of truncated normal variables, Statistics and Computing 5, 1995).
+double NormalAbove(double least, uint64_t bits) {
+  CHECK(std::isfinite(least));
+  const double rate = 0.5 * (least + std::hypot(least, 2.0));
+  for (uint64_t attempt = 0;; ++attempt) {
+    const uint64_t proposal = RandomBits({bits, attempt, 0});
+    const double value = least <= 0 ? Normal(proposal) : least - std::log(Uniform(proposal)) / rate;
+    if (value < least) continue;
+    if (least <= 0 ||
+        Uniform(RandomBits({bits, attempt, 1})) <= std::exp(-0.5 * (value - rate) * (value - rate)))
+      return value;
+  }
+}
+
+// Sets the component k of the distribution to a draw from its marginal distribution truncated at 0,
+// and the others to their distribution given that.
+void DrawPositive(Eigen::Index k, uint64_t bits, NormalDistribution* normal) {
+  const Eigen::RowVectorXd own = normal->root.row(k);
+  const double deviation = own.norm();
+  if (!(deviation > 0)) {  // not determined, or known exactly
+    normal->mean[k] = std::max(normal->mean[k], 0.0);
+    return;
+  }
+  const double drawn =
+      normal->mean[k] + deviation * NormalAbove(-normal->mean[k] / deviation, bits);
+  const Eigen::VectorXd gain = normal->root * own.transpose() / own.squaredNorm();
+  normal->mean += gain * (drawn - normal->mean[k]);
+  normal->root -= gain * own;
 }
 
 // The space of the planned recording alone, with the columns of `now`, after the planned
@@ -114,12 +150,14 @@ Eigen::VectorXd JoinedSpace::DrawToward(const FoundEffect& truth, uint64_t seed,
           1 / (deviation * deviation);
   }
   // r + A δ is noise, so that the mean of δ solves (AᵀA / v + diag s⁻²) δ = −Aᵀr / v.
-  Eigen::VectorXd amounts =
-      DrawNormal(precision, -now_.model.toward()(known) / now_.variance, seed, 2 * number);
-  for (size_t k = 0; k < known.size(); ++k) {
-    double& amount = amounts[static_cast<Eigen::Index>(k)];
-    if (now_.model.Prior(known[k]).positive) amount = std::max(amount, 0.0);
-  }
+  NormalDistribution normal = FromPrecision(precision, -now_.model.toward()(known) / now_.variance);
+  for (size_t k = known.size(); k-- > 0;)  // the amounts of the effect come last
+    if (now_.model.Prior(known[k]).positive)
+      DrawPositive(static_cast<Eigen::Index>(k), RandomBits({seed, 2 * number, k, 1}), &normal);
+  Eigen::VectorXd amounts = normal.mean;
+  for (Eigen::Index k = 0; k < amounts.size(); ++k)
+    amounts +=
+        Normal(RandomBits({seed, 2 * number, static_cast<uint64_t>(k)})) * normal.root.col(k);
   return joined_.model.toward() + noise_.Draw(seed, 2 * number + 1).toward -
          planned_.model.products()(Eigen::all, known) * amounts;
 }

@@ -47,7 +47,10 @@ class JoinedSpace {
 
   // Aᵀr + v A_pᵀC⁻¹r_p for a planned recording that is drawn at random as it would be if the effect
   // were missing, given what the recordings of the run say. The amounts δ of the base and of the
-  // effect are drawn from their posterior, and those of B from their prior:
+  // effect are drawn from their posterior, and those of B from their prior. An amount that must be
+  // positive is drawn first, from its marginal posterior truncated at 0, and the others given it;
+  // of several such amounts, that of the effect comes first and each is truncated given those
+  // before, which is exact for one and approximate for several.
   //   v A_pᵀC⁻¹r_p = n − S δ,   n ~ N(0, v S).
   Eigen::VectorXd DrawToward(const FoundEffect& truth, uint64_t seed, uint64_t number) const;
 

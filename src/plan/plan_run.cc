@@ -68,13 +68,19 @@ PlanRecord RunPlan(const std::filesystem::path& run,
                    const std::optional<std::filesystem::path>& protocols, Progress* progress) {
   const FittedRun fitted = OpenRun(run);
   const std::optional<KeptDiagnosis> diagnosis = FindDiagnosis(run);
+  const std::filesystem::path of_run = run / "diagnosis" / "diagnosis.json";
+  if (!diagnosis && std::filesystem::exists(of_run))
+    throw InputError({of_run.string()},
+                     fmt::format("is of an earlier fit or of another version of the program, or "
+                                 "was changed; `lacuna diagnose {}` makes a new one",
+                                 run.string()));
   if (!diagnosis)
     throw InputError(fmt::format("{}: its fit has not been diagnosed; `lacuna diagnose {}` does it",
                                  run.string(), run.string()));
   const Tried tried = ProtocolsFor(fitted, protocols);
   PlanRecord plan =
       MakePlan({fitted, diagnosis->record, diagnosis->decision}, tried.protocols, progress);
-  plan.diagnosis = HashFile(run / "diagnosis" / "diagnosis.json");
+  plan.diagnosis = HashFile(of_run);
   SayWhere(tried, &plan.outcomes);
   const std::filesystem::path folder = PlanFile(run).parent_path();
   MakeFolder(folder);

@@ -13,6 +13,8 @@
 #include "effects/gravity.h"
 #include "effects/plane_contact.h"
 #include "geometry/rotation.h"
+#include "geometry/tri_mesh.h"
+#include "scan/marker_frames.h"
 
 namespace lacuna {
 namespace {
@@ -91,6 +93,62 @@ RecordedGrip OnFixture(const RecordedGrip& grip, const FixtureMotion& fixture,
   return moved;
 }
 
+// The fixture that the protocol turns about the middle of the first grip and shakes from `start`
+// (s) on. Throws InputError where nothing holds the object, or a grip along some axes only.
+FixtureMotion MovedFixture(const Protocol& protocol, const std::vector<RecordedGrip>& grips,
+                           const TetMesh& mesh, double start) {
+  const char* key = protocol.turn.isZero(0) ? "shake" : "turn";
+  if (grips.empty()) throw InputError(fmt::format("{}: nothing holds the object", key));
+  for (const RecordedGrip& grip : grips)
+    if (!grip.axes.IsAll())
+      throw InputError(
+          fmt::format("{}: {} is held along {} only; a fixture with such a support can neither "
+                      "be turned nor shaken",
+                      key, grip.region.name, grip.axes.Names()));
+  FixtureMotion fixture{Eigen::Isometry3d::Identity(), protocol.shake, start};
+  const Eigen::Vector3d middle =
+      mesh.nodes(Eigen::all, SelectNodes(grips.front().region, mesh)).rowwise().mean();
+  fixture.turn.translate(middle);
+  fixture.turn.rotate(RotationBy(protocol.turn));
+  fixture.turn.translate(-middle);
+  return fixture;
+}
+
+// Adds the last pose of a path once more, at `time` (s).
+void RepeatLastPose(double time, RecordedGrip* grip) {
+  const Eigen::Index count = grip->times.size();
+  grip->times.conservativeResize(count + 1);
+  grip->times[count] = time;
+  grip->displacements.conservativeResize(Eigen::NoChange, count + 1);
+  grip->displacements.col(count) = grip->displacements.col(count - 1);
+  if (grip->rotations.cols() == 0) return;
+  grip->rotations.conservativeResize(Eigen::NoChange, count + 1);
+  grip->rotations.col(count) = grip->rotations.col(count - 1);
+}
+
+// Extends a given path to `end` (s): the grip rests in its last pose. The pose is given again one
+// spacing after the last one, too: with a pose at `end` alone, the spline through the poses would
+// leave the last one with nearly the full velocity and swing back until `end`.
+void RestUntil(double end, RecordedGrip* grip) {
+  const Eigen::Index count = grip->times.size();
+  if (grip->motion != GripMotion::kGiven || grip->times[count - 1] >= end) return;
+  if (count > 1) {
+    const double stopped = 2 * grip->times[count - 1] - grip->times[count - 2];
+    if (stopped < end) RepeatLastPose(stopped, grip);
+  }
+  RepeatLastPose(end, grip);
+}
+
+// Extends a force that was measured over time to `end` (s) with its last value.
+void HoldUntil(double end, MeasuredForce* force) {
+  const Eigen::Index count = force->times.size();
+  if (count < 2 || force->times[count - 1] >= end) return;  // one value: a constant force
+  force->times.conservativeResize(count + 1);
+  force->times[count] = end;
+  force->forces.conservativeResize(Eigen::NoChange, count + 1);
+  force->forces.col(count) = force->forces.col(count - 1);
+}
+
 std::vector<double> PlannedTimes(const PredictedRecording& item, double factor) {
   std::vector<double> times;
   for (const int frame : item.frames) times.push_back(item.recording.times[frame]);
@@ -108,15 +166,13 @@ Markers PlannedMarkers(const PredictedRecording& item, const std::vector<double>
                        const FixtureMotion& fixture) {
   Markers markers = item.recording.markers;
   markers.positions.clear();
-  markers.weights.clear();
+  markers.weights.clear();  // recordings of markers have no σ of single points
   for (size_t k = 0; k < times.size(); ++k) {
     const int frame = item.frames[std::min(k, item.frames.size() - 1)];
     Eigen::Matrix3Xd positions = item.recording.markers.positions[frame];
     for (Eigen::Index m = 0; m < positions.cols(); ++m)
       if (!positions.col(m).allFinite()) positions.col(m) = markers.places.col(m);
     markers.positions.push_back(fixture.At(times[k]) * positions);
-    if (!item.recording.markers.weights.empty())
-      markers.weights.push_back(item.recording.markers.weights[frame]);
   }
   return markers;
 }
@@ -167,10 +223,6 @@ void AddMarkers(int count, const TetMesh& mesh, const std::vector<RecordedGrip>&
     positions.conservativeResize(Eigen::NoChange, before + count);
     positions.rightCols(count) = markers->places.rightCols(count);
   }
-  for (Eigen::VectorXd& weights : markers->weights) {
-    weights.conservativeResize(before + count);
-    weights.tail(count).setOnes();
-  }
 }
 
 void Pull(double factor, PredictedRecording* item) {
@@ -194,7 +246,7 @@ void Pull(double factor, PredictedRecording* item) {
 
 std::shared_ptr<const Effect> AttachedWeight(const Protocol::Weight& weight,
                                              const PredictionStudy& study, const TetMesh& mesh) {
-  const Eigen::AlignedBox3d box(mesh.nodes.rowwise().minCoeff(), mesh.nodes.rowwise().maxCoeff());
+  const Eigen::AlignedBox3d box = BoundingBox(mesh.nodes);
   if (box.exteriorDistance(weight.place) > weight.radius)
     throw InputError(fmt::format("weight: its place is {:.3g} mm away from the object",
                                  1e3 * box.exteriorDistance(weight.place)));
@@ -208,25 +260,43 @@ std::shared_ptr<const Effect> AttachedWeight(const Protocol::Weight& weight,
   return MakeAttachedMass(weight.mass, weight.place, weight.radius, gravity);
 }
 
-// The clamp cannot go where a plane of contact stands.
-void RequireClampAbovePlanes(const std::vector<RecordedGrip>& grips, const PredictionStudy& study,
-                             const TetMesh& mesh, const std::vector<double>& times) {
+// How far the lowest node of the grip's region reaches above the plane, m, at the lowest of these
+// times (s); negative behind it. With the time at which it does.
+struct Clearance {
+  double height = std::numeric_limits<double>::infinity(), time = 0;
+};
+Clearance ClearanceOf(const RecordedGrip& grip, const ContactPlane& plane, const TetMesh& mesh,
+                      const std::vector<double>& times) {
+  const Eigen::Vector3d normal = plane.normal.normalized();
+  const Eigen::Matrix3Xd rest = mesh.nodes(Eigen::all, SelectNodes(grip.region, mesh));
+  Clearance least;
+  for (const double time : times) {
+    const double height =
+        (normal.transpose() * (MotionAt(grip, time) * rest)).minCoeff() - plane.offset;
+    if (height < least.height) least = {height, time};
+  }
+  return least;
+}
+
+// The clamp cannot go where a plane of contact stands, unless it is as deep there in the recording
+// that is changed, whose path or plane may be off by that much. `recorded` are the grips of that
+// recording at its times `recorded_times`, in the same order as the planned `grips`.
+void RequireClampAbovePlanes(const std::vector<RecordedGrip>& grips,
+                             const std::vector<double>& times,
+                             const std::vector<RecordedGrip>& recorded,
+                             const std::vector<double>& recorded_times,
+                             const PredictionStudy& study, const TetMesh& mesh) {
   for (const auto& effect : study.effects) {
     const std::optional<ContactPlane> plane = ContactPlaneOf(*effect);
     if (!plane) continue;
-    const Eigen::Vector3d normal = plane->normal.normalized();
-    for (const RecordedGrip& grip : grips) {
-      if (grip.motion != GripMotion::kGiven) continue;
-      const Eigen::Matrix3Xd rest = mesh.nodes(Eigen::all, SelectNodes(grip.region, mesh));
-      for (const double time : times) {
-        const double lowest =
-            (normal.transpose() * (MotionAt(grip, time) * rest)).minCoeff() - plane->offset;
-        if (lowest < -kTouching)
-          throw InputError(
-              fmt::format("at {:.3g} s {} would be {:.3g} mm behind the plane of "
-                          "contact of the model",
-                          time, grip.region.name, -1e3 * lowest));
-      }
+    for (size_t k = 0; k < grips.size(); ++k) {
+      if (grips[k].motion != GripMotion::kGiven) continue;
+      const Clearance planned = ClearanceOf(grips[k], *plane, mesh, times);
+      const Clearance before = ClearanceOf(recorded[k], *plane, mesh, recorded_times);
+      if (planned.height < std::min(before.height, 0.0) - kTouching)
+        throw InputError(fmt::format(
+            "at {:.3g} s {} would be {:.3g} mm behind the plane of contact of the model",
+            planned.time, grips[k].region.name, -1e3 * planned.height));
     }
   }
 }
@@ -249,6 +319,7 @@ PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& 
   item.fitted = true;
   item.fit_until = std::numeric_limits<double>::infinity();
   item.simulated_cells.clear();  // a plan shows what is expected
+  item.recording.frames = MarkerFrames();
   const std::vector<double> times = PlannedTimes(base, protocol.duration);
   const size_t fewest = study.scheme == TimeScheme::kQuasiStatic ? 1 : 3;
   if (times.size() < fewest)
@@ -257,49 +328,28 @@ PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& 
   Pull(protocol.pull, &item);
 
   RecordedObject& object = item.recording.object;
-  const bool moves_fixture = !protocol.turn.isZero(0) || protocol.shake;
   std::vector<RecordedGrip> grips = AsGrips(object, times.front() - kLeaves, times.back());
-  FixtureMotion fixture{Eigen::Isometry3d::Identity(), protocol.shake, base.StartTime()};
-  if (moves_fixture) {
-    if (grips.empty())
-      throw InputError(
-          fmt::format("{}: nothing holds the object", protocol.turn.isZero(0) ? "shake" : "turn"));
-    for (const RecordedGrip& grip : grips)
-      if (!grip.axes.IsAll())
-        throw InputError(fmt::format(
-            "{}: {} is held along {} only; a fixture with such a support can neither "
-            "be turned nor shaken",
-            protocol.turn.isZero(0) ? "shake" : "turn", grip.region.name, grip.axes.Names()));
-    const Eigen::Vector3d middle =
-        mesh.nodes(Eigen::all, SelectNodes(grips.front().region, mesh)).rowwise().mean();
-    fixture.turn.translate(middle);
-    fixture.turn.rotate(RotationBy(protocol.turn));
-    fixture.turn.translate(-middle);
+  FixtureMotion fixture;
+  if (!protocol.turn.isZero(0) || protocol.shake) {
+    fixture = MovedFixture(protocol, grips, mesh, base.StartTime());
     for (RecordedGrip& grip : grips)
       if (grip.motion == GripMotion::kGiven) grip = OnFixture(grip, fixture, times);
     object.fixed.clear();
     object.grips = grips;
   }
   planned.fixture = fixture.turn;
-  for (RecordedGrip& grip : object.grips) {
-    if (grip.motion != GripMotion::kGiven || grip.times[grip.times.size() - 1] >= times.back())
-      continue;
-    // The grip rests in its last pose.
-    const Eigen::Index count = grip.times.size();
-    grip.times.conservativeResize(count + 1);
-    grip.times[count] = times.back();
-    grip.displacements.conservativeResize(Eigen::NoChange, count + 1);
-    grip.displacements.col(count) = grip.displacements.col(count - 1);
-    if (grip.rotations.cols() == 0) continue;
-    grip.rotations.conservativeResize(Eigen::NoChange, count + 1);
-    grip.rotations.col(count) = grip.rotations.col(count - 1);
-  }
+  for (RecordedGrip& grip : object.grips) RestUntil(times.back(), &grip);
+  for (MeasuredForce& force : object.forces) HoldUntil(times.back(), &force);
   for (MeasuredReaction& reaction : object.reactions) {
     reaction.times =
         Eigen::Map<const Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(times.size()));
     reaction.values = Eigen::MatrixXd::Zero(reaction.Components(), reaction.times.size());
   }
-  RequireClampAbovePlanes(grips, study, mesh, times);
+  const std::vector<double> recorded_times = PlannedTimes(base, 1);
+  RequireClampAbovePlanes(
+      grips, times,
+      AsGrips(base.recording.object, recorded_times.front() - kLeaves, recorded_times.back()),
+      recorded_times, study, mesh);
 
   item.recording.markers = PlannedMarkers(base, times, fixture);
   if (protocol.more_markers > 0)

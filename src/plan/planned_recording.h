@@ -23,11 +23,14 @@ struct PlannedRecording {
 };
 
 // The recording that the protocol makes of one of the study's recordings, named after the protocol.
-// `mesh` is the undeformed object. Regions, grips and the hold refer to the undeformed object as
-// before; a fixture that is turned or shaken has grips with given paths, which start at the
-// undeformed place some seconds before the first frame. Throws InputError, without a position, for
-// what cannot be done: a clamp to be turned or shaken that does not exist, a pull where nothing
-// pulls, a mass outside the object, a clamp that moves through a plane of contact.
+// It is one of markers, as it is written (recording_writer.h) and a fit will read it, also where
+// the other one has tracked points: all have the same noise, and places that are known to the
+// study's `place_deviation`. `mesh` is the undeformed object. Regions, grips and the hold refer to
+// the undeformed object as before; a fixture that is turned or shaken has grips with given paths,
+// which start at the undeformed place some seconds before the first frame. Throws InputError,
+// without a position, for what cannot be done: a clamp to be turned or shaken that does not exist,
+// a pull where nothing pulls, a mass outside the object, a clamp that moves through a plane of
+// contact.
 PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& study,
                                const TetMesh& mesh);
 

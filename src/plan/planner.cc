@@ -163,7 +163,8 @@ Influence Planner::InfluenceOf(const Protocol& protocol) const {
   for (LinearPrior& prior : own_priors) prior = {0, prior.deviation, false};
 
   const auto whiten = [&](const Eigen::MatrixXd& columns) {
-    return WhitenedRows(columns, misfit, run_.diagnosis.noise.correlation_time, false);
+    return WhitenedRows(columns, misfit,
+                        {.correlation_time = run_.diagnosis.noise.correlation_time});
   };
   influence.columns = {whiten(misfit.jacobian.leftCols(of_model)), whiten(own),
                        std::move(own_priors), whiten(linearised.OfDirections())};
@@ -271,6 +272,44 @@ void SetNamedNow(const DiagnosedRun& run, std::vector<PlannedRival>* rivals) {
       rival.named_now = power->named;
 }
 
+// The pairs of effects that the diagnosis must keep, "drag with gravity", and their probability.
+struct KeptPairs {
+  std::vector<std::string> names;
+  double probability = 0;
+};
+KeptPairs PairsOf(const DiagnosisRecord& diagnosis) {
+  const std::vector<HypothesisProbability>& all = diagnosis.decision.probabilities;
+  KeptPairs pairs;
+  for (const size_t k : NameFrom(all).kept) {
+    if (all[k].kind != Kind::kPair) continue;
+    std::vector<std::string> names = all[k].names;
+    std::erase_if(names, [&](const std::string& name) { return IsNuisance(all, name); });
+    const std::string text = fmt::format("{}", fmt::join(names, " with "));
+    if (std::count(pairs.names.begin(), pairs.names.end(), text) == 0) pairs.names.push_back(text);
+    pairs.probability += all[k].probability;
+  }
+  return pairs;
+}
+
+// A plan asks which single effect is missing. Throws InputError where the diagnosis says that one
+// is, with or without another one, or where it holds pairs more probable than single effects.
+void RequireSingleEffects(const DiagnosisRecord& diagnosis, const std::string& run) {
+  const KeptPairs pairs = PairsOf(diagnosis);
+  if (pairs.names.empty()) return;
+  const Naming naming = NameFrom(diagnosis.decision.probabilities);
+  const bool has_common = naming.level == Naming::Level::kCommon;
+  double single = 0;
+  for (const PlannedRival& rival : RivalsOf(diagnosis)) single += rival.probability;
+  if (!has_common && pairs.probability <= single) return;
+  throw InputError(fmt::format(
+      "the diagnosis of {} keeps pairs of effects ({}), and a recording can only be planned "
+      "between single ones: add {} to the model first, then fit, diagnose and plan again",
+      run, fmt::join(pairs.names, ", "),
+      has_common ? fmt::format("{}, which all that it keeps have in common,",
+                               fmt::join(naming.names, " and "))
+                 : "one of them"));
+}
+
 }  // namespace
 
 std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis) {
@@ -279,12 +318,10 @@ std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis) {
   std::vector<std::string> order;
   for (const size_t k : NameFrom(all).kept) {
     const HypothesisProbability& one = all[k];
-    if (one.kind != Kind::kEffect && one.kind != Kind::kPair) continue;
-    for (const std::string& name : one.names) {
-      if (IsNuisance(all, name)) continue;  // beside the effects
-      if (probability.try_emplace(name, 0.0).second) order.push_back(name);
-      if (one.kind == Kind::kEffect) probability[name] += one.probability;
-    }
+    if (one.kind != Kind::kEffect) continue;
+    const std::string& name = one.names.front();  // nuisances beside it stand behind
+    if (probability.try_emplace(name, 0.0).second) order.push_back(name);
+    probability[name] += one.probability;
   }
   std::vector<PlannedRival> rivals;
   for (const std::string& name : order) {
@@ -309,6 +346,7 @@ PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protoc
       std::erase_if(names, [&](const std::string& name) { return IsNuisance(all, name); });
     kept.insert(std::move(names));
   }
+  if (kept.size() > 1) RequireSingleEffects(run.diagnosis, record.run);
   if (record.rivals.empty() || kept.size() < 2)
     throw InputError(fmt::format(
         "the diagnosis of {} has left no rivals: there is nothing that a further recording would "
@@ -324,6 +362,7 @@ PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protoc
         fmt::format("the influence of {} on another recording cannot be predicted to "
                     "first order",
                     fmt::join(record.not_predicted, ", ")));
+  for (const std::string& pair : PairsOf(run.diagnosis).names) record.not_predicted.push_back(pair);
   SetNamedNow(run, &record.rivals);
   double sum = 0;
   for (const PlannedRival& rival : record.rivals) sum += rival.probability;

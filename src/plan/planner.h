@@ -32,14 +32,16 @@ struct DiagnosedRun {
   const DecisionInput& decision;  // what the diagnosis has decided from
 };
 
-// The effects among the hypotheses that the diagnosis must keep to reach kStatedProbability, alone
-// or in pairs, the most probable one first. Their PlannedRival::named_now is not set.
+// The single effects among the hypotheses that the diagnosis must keep to reach kStatedProbability,
+// the most probable one first. Their PlannedRival::named_now is not set.
 std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis);
 
 // The outcomes are sorted. A protocol that cannot be played is reported in its message. Throws
 // InputError where the diagnosis has left fewer than two hypotheses that differ in their effects,
-// or no effect among them. Protocols are played side by side; the result does not depend on the
-// number of threads. Throws Interrupted.
+// or no effect among them, and where it keeps pairs of effects that all have an effect in common
+// with everything else that it keeps, or that are more probable than the single effects. Other
+// pairs are named in PlanRecord::not_predicted. Protocols are played side by side; the result does
+// not depend on the number of threads. Throws Interrupted.
 PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protocols,
                     Progress* progress);
 

@@ -96,7 +96,7 @@ double HighestShakeFrequency(const PredictedRecording& item, double time_step) {
 
 const PredictedRecording& PlannableRecording(const PredictionStudy& study) {
   for (const PredictedRecording& item : study.recordings)
-    if (item.fitted && item.scans == nullptr) return item;
+    if (item.fitted && !item.ShowsScans()) return item;
   throw InputError({study.file.string()},
                    "no fitted recording has markers or tracked points; recordings of scans cannot "
                    "be planned yet");

@@ -46,7 +46,7 @@ struct Protocol {
 inline constexpr double kStepsPerPeriod = 6, kFramesPerPeriod = 2;
 double HighestShakeFrequency(const PredictedRecording& item, double time_step);
 
-// What is done, in words: "released from 2 times the pull, clamp turned by 90° about y".
+// What is done, in words: `"bar" with 2 times the pull, clamp turned by 90° about y`.
 std::string DescribeProtocol(const Protocol& protocol);
 
 // The recording from which plans start unless a protocol names another: the first one that is

@@ -1,11 +1,14 @@
 #include "plan/protocol_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
 
+#include "core/file_name.h"
 #include "core/quantity.h"
 #include "core/suggestion.h"
 
@@ -23,21 +26,25 @@ const PredictedRecording& ReadBase(const Config& item, const PredictionStudy& st
   for (const PredictedRecording& recording : study.recordings) {
     if (recording.name != name) {
       known.push_back(recording.name);
-    } else if (recording.scans != nullptr) {
+    } else if (recording.ShowsScans()) {
       item.Fail("recording", "shows scans; only recordings of markers can be planned yet");
     } else {
       return recording;
     }
   }
-  item.Fail("recording",
-            fmt::format("the run has no recording \"{}\"{}", name, Suggestion(name, known)));
+  item.Fail("recording", fmt::format("the run has no recording \"{}\"{}; its recordings: {}", name,
+                                     Suggestion(name, known), fmt::join(known, ", ")));
 }
 
 Eigen::Vector3d ReadTurn(const Config& turn) {
   const Eigen::Vector3d axis = turn.Vector("axis", kDimensionless);
   if (axis.norm() == 0) turn.Fail("axis", "expected a direction other than 0");
-  constexpr double kHalf = std::numbers::pi;
-  return turn.Quantity("angle", kAngle, {-kHalf, kHalf, false, false}) * axis.normalized();
+  constexpr double kHalf = (1 + 1e-12) * std::numbers::pi;  // 180 deg may be rounded
+  const double angle = turn.Quantity("angle", kAngle, kAnyValue);
+  if (std::abs(angle) > kHalf)
+    turn.Fail("angle", fmt::format("got {:.6g} deg; expected an angle from -180 deg to 180 deg",
+                                   angle * 180 / std::numbers::pi));
+  return angle * axis.normalized();
 }
 
 Protocol::Shake ReadShake(const Config& shake, const PredictedRecording& base, double time_step) {
@@ -82,13 +89,19 @@ ProtocolFile ReadProtocols(const Config& config, const PredictionStudy& study) {
   ProtocolFile file;
   file.stock = config.Flag("stock", file.stock);
   file.items = config.Items("protocols");
+  if (!config.Has("protocols"))
+    config.Fail("protocols", "is absent; expected a list like [{name: harder, pull: 2}]");
   if (file.items.empty()) config.Fail("protocols", "is empty");
   for (const Config& item : file.items) {
     Protocol protocol = ReadProtocol(item, study);
-    for (const Protocol& other : file.protocols)
+    for (const Protocol& other : file.protocols) {
       if (other.name == protocol.name)
         item.Fail("name",
                   fmt::format("\"{}\" is already the name of another protocol", protocol.name));
+      if (FileNameFor(other.name) == FileNameFor(protocol.name))
+        item.Fail("name", fmt::format("\"{}\" would have the same folder, {}, as \"{}\"",
+                                      protocol.name, FileNameFor(protocol.name), other.name));
+    }
     file.protocols.push_back(std::move(protocol));
   }
   config.RefuseUnknownKeys();

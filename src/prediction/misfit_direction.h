@@ -16,9 +16,10 @@ struct MisfitDirection {
   // of a grip along or about an axis (grip_placement.h).
   enum class Kind { kModel, kClock, kShift, kTurn, kCellDelay, kGripShift, kGripTurn };
   Kind kind = Kind::kModel;
-  int axis = 0;                    // kCellDelay: the number of the reading
+  int axis = 0;                    // for kShift, kTurn, kGripShift and kGripTurn: 0, 1 or 2
   Perturbation perturbation = {};  // for kModel
   size_t grip = 0;                 // for kGripShift and kGripTurn: its index in Model::grips
+  size_t reading = 0;              // for kCellDelay: its index in RecordingModel::Reactions()
 
   bool IsOfGrip() const { return kind == Kind::kGripShift || kind == Kind::kGripTurn; }
   // Whether the derivative is that of the simulation. All others follow from the motion.

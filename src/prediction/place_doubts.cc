@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "core/first_few.h"
 #include "geometry/rigid_fit.h"
 
 namespace lacuna {
@@ -71,15 +72,13 @@ std::vector<Eigen::Index> ExchangedMarkers(const Eigen::Matrix3Xd& places,
 std::string DescribeExchange(const std::vector<Eigen::Index>& exchanged,
                              const std::vector<Eigen::Index>& nearest,
                              const std::vector<std::string>& names) {
-  constexpr size_t kShown = 4;
   std::vector<std::string> parts;
-  for (size_t k = 0; k < std::min(kShown, exchanged.size()); ++k) {
-    const auto m = static_cast<size_t>(exchanged[k]);
+  for (const Eigen::Index index : exchanged) {
+    const auto m = static_cast<size_t>(index);
     parts.push_back(fmt::format("{} is near the place of {}", names[m],
                                 names[static_cast<size_t>(nearest[m])]));
   }
-  return fmt::format("{}{}: names or places of markers are exchanged", fmt::join(parts, ", "),
-                     exchanged.size() > kShown ? ", …" : "");
+  return FirstFew(parts) + ": names or places of markers are exchanged";
 }
 
 // The ratio of units by which the tracks would have to be multiplied; 1 where none fits.
@@ -204,7 +203,7 @@ std::string DoubtOfPlaces(const Eigen::Matrix3Xd& places, const Eigen::Matrix3Xd
 std::string DoubtOfPlaces(const PredictionStudy& study, const PredictedRecording& item) {
   const Recording& recording = item.recording;
   const Markers& markers = recording.markers;
-  if (item.scans != nullptr || HasTrackedPoints(recording) || markers.positions.empty() ||
+  if (item.ShowsScans() || HasTrackedPoints(recording) || markers.positions.empty() ||
       recording.reference.source == ReferenceSource::kFirstFrame)
     return "";
   const Eigen::Matrix3Xd& measured = markers.positions[static_cast<size_t>(item.frames.front())];
@@ -277,8 +276,8 @@ std::string DoubtOfIncrements(const PredictedRecording& item) {
   // that follow its steps, less than the second share of what is left beside the path.
   constexpr double kFollows = 0.04, kBetter = 1.0 / 16;
   const Recording& recording = item.recording;
-  if (item.scans != nullptr || !HasTrackedPoints(recording) ||
-      recording.markers.positions.empty() || item.frames.size() < kFewestFrames)
+  if (item.ShowsScans() || !HasTrackedPoints(recording) || recording.markers.positions.empty() ||
+      item.frames.size() < kFewestFrames)
     return "";
   for (const RecordedGrip& grip : recording.object.grips) {
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();

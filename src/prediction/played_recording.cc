@@ -9,7 +9,7 @@
 #include "core/quantity.h"
 #include "prediction/reaction_misfit.h"
 #include "prediction/reading_times.h"
-#include "scan/random_bits.h"
+#include "scan/normal_noise.h"
 
 namespace lacuna {
 namespace {
@@ -41,7 +41,7 @@ MeasuredReaction PlayedReading(const MeasuredReaction& reading, const ReactionMi
 std::vector<std::vector<double>> CellTimesOf(const std::vector<double>& frame_times,
                                              const RecordingModel& model,
                                              const Eigen::VectorXd& nuisance) {
-  const std::vector<SimulatedCell>& cells = model.item().simulated_cells;
+  const std::vector<SimulatedCell>& cells = model.recording().simulated_cells;
   CHECK(cells.empty() || cells.size() == model.Reactions().size());
   std::vector<std::vector<double>> times(model.Reactions().size());
   for (size_t k = 0; k < times.size(); ++k) {
@@ -55,7 +55,7 @@ std::vector<std::vector<double>> CellTimesOf(const std::vector<double>& frame_ti
 }  // namespace
 
 Eigen::VectorXd PlayedNuisances(const RecordingModel& model) {
-  const PredictedRecording& item = model.item();
+  const PredictedRecording& item = model.recording();
   if (item.hold && !item.hold->force)
     throw InputError(
         fmt::format("{}: the object is held until {} by a force that is not known; to play the "
@@ -69,8 +69,8 @@ Eigen::VectorXd PlayedNuisances(const RecordingModel& model) {
 
 PlayedRecording Play(const RecordingModel& model, const Eigen::VectorXd& nuisance) {
   const MarkerObserver* observer = model.Markers();
-  CHECK(observer != nullptr) << model.item().name << " shows scans";
-  const PredictedRecording& item = model.item();
+  CHECK(observer != nullptr) << model.recording().name << " shows scans";
+  const PredictedRecording& item = model.recording();
   const Model placed = model.PlacedModel(nuisance);
   PredictionOptions options = model.Options(nuisance);
   options.reactions = MeasuredReactions(model.Reactions(), placed);
@@ -109,22 +109,21 @@ PlayedRecording Play(const RecordingModel& model, const Eigen::VectorXd& nuisanc
 
 MarkerRecording AsRecording(const PredictedRecording& item, const PlayedRecording& played,
                             double noise, uint64_t seed) {
-  constexpr uint64_t kMarkers = 90, kForces = 91;
+  constexpr uint64_t kMarkerNoise = 90, kForceNoise = 91;  // streams
   MarkerRecording recording;
   recording.name = item.name;
   recording.object = item.recording.object;
   recording.object.reactions = played.reactions;
   recording.times = played.times;
   recording.markers = {item.recording.markers.names, item.recording.markers.places, played.markers};
+  recording.instrument = item.recording.instrument;
   for (size_t f = 0; noise > 0 && f < played.markers.size(); ++f)
-    for (Eigen::Index k = 0; k < recording.markers.positions[f].size(); ++k)
-      recording.markers.positions[f].reshaped()[k] +=
-          noise * Normal(RandomBits({seed, kMarkers, f, static_cast<uint64_t>(k)}));
+    AddNormalNoise(noise, {.seed = seed, .stream = kMarkerNoise, .number = f},
+                   recording.markers.positions[f]);
   for (size_t r = 0; r < recording.object.reactions.size(); ++r) {
     MeasuredReaction& reading = recording.object.reactions[r];
-    for (Eigen::Index k = 0; k < reading.values.size(); ++k)
-      reading.values.reshaped()[k] +=
-          reading.deviation * Normal(RandomBits({seed, kForces, r, static_cast<uint64_t>(k)}));
+    AddNormalNoise(reading.deviation, {.seed = seed, .stream = kForceNoise, .number = r},
+                   reading.values);
   }
   return recording;
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fem/prediction.h"
-#include "prediction/predicted_motion.h"
+#include "prediction/recording_model.h"
 #include "scan/recording_writer.h"
 
 namespace lacuna {
@@ -33,8 +33,9 @@ Eigen::VectorXd PlayedNuisances(const RecordingModel& model);
 PlayedRecording Play(const RecordingModel& model, const Eigen::VectorXd& nuisance);
 
 // The recording with the played markers and forces in place of the measured ones. Each coordinate
-// has a normal error of standard deviation `noise`, m, and each force one of the deviation of its
-// load cell; the same `seed` gives the same errors.
+// has a normal error of standard deviation `noise`, m, also where the measured points had a σ of
+// their own, and each force one of the deviation of its load cell; the same `seed` gives the same
+// errors.
 MarkerRecording AsRecording(const PredictedRecording& item, const PlayedRecording& played,
                             double noise, uint64_t seed);
 

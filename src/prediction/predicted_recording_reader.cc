@@ -64,7 +64,7 @@ double LargestMove(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
 void RequireStartAtRest(const Config& config, const PredictedRecording& item) {
   constexpr double kLarge = 0.25, kBeyondNoise = 3;
   const Recording& recording = item.recording;
-  if (item.hold || item.scans != nullptr || item.frames.size() < 3) return;
+  if (item.hold || item.ShowsScans() || item.frames.size() < 3) return;
   const auto& positions = recording.markers.positions;
   const Eigen::Matrix3Xd& first = positions[item.frames[0]];
   const double step = LargestMove(first, positions[item.frames[1]]);
@@ -99,7 +99,7 @@ void RequirePlaces(const Config& config, const Recording& recording) {
 }
 
 // Checks that the recording contains what a prediction of markers or of scans needs.
-void CheckObserved(const Config& config, const PredictedRecording& item, bool tells_the_shape) {
+void CheckObserved(const Config& config, const PredictedRecording& item, bool defines_body_shape) {
   const Recording& recording = item.recording;
   const bool of_first_frame = recording.reference.source == ReferenceSource::kFirstFrame;
   const bool is_tracked = HasTrackedPoints(recording);
@@ -108,7 +108,7 @@ void CheckObserved(const Config& config, const PredictedRecording& item, bool te
         "hold",
         "the places of tracked points are taken from the first frame, so the object may not "
         "be held in a deformed shape there");
-  if (item.scans == nullptr) {
+  if (!item.ShowsScans()) {
     RequirePlaces(config, recording);
     if (of_first_frame && !is_tracked)
       config.Fail("recording", "has no reference shape: markers alone do not determine it");
@@ -125,7 +125,7 @@ void CheckObserved(const Config& config, const PredictedRecording& item, bool te
       config.Fail("recording", fmt::format("{} is to deform with the scan, whose points are not "
                                            "identified: this needs markers or tracked points",
                                            grip.region.name));
-  if (tells_the_shape && of_first_frame && item.hold) {
+  if (defines_body_shape && of_first_frame && item.hold) {
     config.Fail("hold",
                 "the recording's reference shape is its first frame, in which the object is held "
                 "in a deformed shape: give a `reference` mesh");
@@ -164,7 +164,7 @@ void CheckReactions(const Config& config, PredictedRecording* item) {
 
 PredictedRecording ReadRecordingEntry(const Config& config, const EffectList& of_study,
                                       const ScanSettings& scan, TimeScheme scheme,
-                                      bool tells_the_shape) {
+                                      bool defines_body_shape) {
   PredictedRecording item;
   item.recording = LoadRecording(config, "recording");
   item.name = config.Text("name", item.recording.name);
@@ -197,7 +197,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const EffectList& of
   if (item.fitted && item.fit_until < item.recording.times[item.frames[fewest - 1]])
     config.Fail("fit_until", fmt::format("leaves fewer than {} frames to fit", fewest));
   if (HasTrackedPoints(item.recording)) ConvertTrackedPointsToMarkers(item.frames, &item.recording);
-  CheckObserved(config, item, tells_the_shape);
+  CheckObserved(config, item, defines_body_shape);
   if (scheme == TimeScheme::kQuasiStatic) {
     if (item.hold)
       config.Fail("hold", "a released object vibrates, so motion.scheme may not be quasi_static");

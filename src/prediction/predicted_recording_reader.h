@@ -11,12 +11,12 @@
 namespace lacuna {
 
 // Loads the recording that the entry names and checks that a prediction can be compared with it.
-// `of_study`: the effects that act in all recordings, the material first. `tells_the_shape` is true
-// for the first recording of the study, whose reference shape is meshed. Throws InputError with the
-// position of the entry's key.
+// `of_study`: the effects that act in all recordings, the material first. `defines_body_shape` is
+// true for the first recording of the study, whose reference shape is meshed. Throws InputError
+// with the position of the entry's key.
 PredictedRecording ReadRecordingEntry(const Config& config, const EffectList& of_study,
                                       const ScanSettings& scan, TimeScheme scheme,
-                                      bool tells_the_shape);
+                                      bool defines_body_shape);
 
 }  // namespace lacuna
 

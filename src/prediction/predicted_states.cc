@@ -46,7 +46,7 @@ PredictedStates PredictStates(const RecordingModel& recording, const Eigen::Vect
   PredictedStates predicted;
   predicted.delay = recording.Delay(nuisance);
   predicted.registration = recording.Registration(nuisance);
-  const std::vector<int>& frames = recording.item().frames;
+  const std::vector<int>& frames = recording.recording().frames;
   const PredictionOptions options = recording.Options(nuisance);
   EffectMemory memory(recording.model(), options.step.scheme);
   const std::vector<int> chosen = EvenlySpread(static_cast<int>(frames.size()), most);
@@ -57,7 +57,7 @@ PredictedStates PredictStates(const RecordingModel& recording, const Eigen::Vect
   for (int frame = 0; frame < static_cast<int>(frames.size()); ++frame) {
     const bool keep = std::binary_search(chosen.begin(), chosen.end(), frame);
     if (!keep && memory.IsEmpty()) continue;
-    times.push_back(recording.item().recording.times[frames[static_cast<size_t>(frame)]] -
+    times.push_back(recording.recording().recording.times[frames[static_cast<size_t>(frame)]] -
                     predicted.delay);
     is_kept.push_back(keep);
   }
@@ -83,7 +83,7 @@ MotionRecord ShownMotion(const RecordingModel& recording, const PredictedStates&
                          const SmoothForce* force) {
   const Body& body = *recording.model().body;
   MotionRecord motion;
-  motion.recording = recording.item().name;
+  motion.recording = recording.recording().name;
   if (const auto gravity = GravityOf(recording.model().effects); gravity && gravity->norm() > 0)
     motion.up = predicted.registration.linear() * -gravity->normalized();
   const ThinnedSurface shown = ThinSurface(body.boundary.surface, kMostShownVertices);
@@ -120,7 +120,7 @@ MotionRecord ShownMotion(const RecordingModel& recording, const PredictedStates&
       motion.fields[5].values.col(k) = LengthsAt(force->DensityAt(state.time), nodes);
   }
   motion.notes = NotesOnThinning(vertices, body.boundary.surface.vertices.cols(), count,
-                                 std::ssize(recording.item().frames));
+                                 std::ssize(recording.recording().frames));
   if (!predicted.summary.IsUsable())
     motion.notes.push_back("The prediction stops early: " + predicted.summary.message);
   return motion;

@@ -9,7 +9,7 @@
 
 #include "fem/prediction.h"
 #include "fem/reduced_response.h"
-#include "prediction/predicted_motion.h"
+#include "prediction/recording_model.h"
 #include "prediction/smooth_force.h"
 #include "record/motion_record.h"
 

@@ -36,7 +36,6 @@ struct Hold {
 };
 
 // One recording of the study, and how the prediction is compared with it.
-
 struct PredictedRecording {
   std::string name;
   Recording recording;
@@ -57,9 +56,18 @@ struct PredictedRecording {
   // not know them.
   std::vector<SimulatedCell> simulated_cells = {};
 
+  bool ShowsScans() const { return scans != nullptr; }
+  // Whether a frame is fitted. The other used frames are held out.
+  bool IsFitted(int frame) const { return fitted && recording.times[frame] <= fit_until; }
+  // The used frames that are fitted, ascending; none where the recording is only predicted.
+  std::vector<int> FittedFrames() const;
   // The time, s, until which the object is at rest.
   double StartTime() const { return hold ? hold->release : recording.times[frames.front()]; }
 };
+// Where both recordings show markers of the same names at the same places on the object, in any
+// order: for each marker of `a` the number of that marker in `b`.
+std::optional<std::vector<int>> SameMarkers(const PredictedRecording& a,
+                                            const PredictedRecording& b);
 // The regions of its object and of its hold.
 std::vector<Region*> RegionsIn(PredictedRecording* item);
 

@@ -230,8 +230,9 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.explained_misfit = config.Number("explained_misfit", kNotNegative, study.explained_misfit);
   study.scan = ReadScanSettings(config);
   for (const Config& item : config.Items("recordings")) {
-    PredictedRecording recording = ReadRecordingEntry(item, study.effects, study.scan, study.scheme,
-                                                      /*tells_the_shape=*/study.recordings.empty());
+    PredictedRecording recording =
+        ReadRecordingEntry(item, study.effects, study.scan, study.scheme,
+                           /*defines_body_shape=*/study.recordings.empty());
     for (const PredictedRecording& other : study.recordings)
       if (other.name == recording.name)
         item.Fail("name", fmt::format("\"{}\" is already the name of another recording; an entry "

@@ -9,7 +9,7 @@ namespace {
 bool IsDelay(const MisfitDirection& direction, Eigen::Index k) {
   using Kind = MisfitDirection::Kind;
   return direction.kind == Kind::kClock ||
-         (direction.kind == Kind::kCellDelay && direction.axis == k);
+         (direction.kind == Kind::kCellDelay && direction.reading == static_cast<size_t>(k));
 }
 
 // The derivative of reaction `k` of the state by each direction: 3 × directions, N per unit.

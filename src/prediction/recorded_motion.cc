@@ -18,13 +18,6 @@ namespace {
 // noise is correlated from frame to frame.
 constexpr double kMoves = 2;
 
-std::vector<int> FramesUntil(const PredictedRecording& item) {
-  std::vector<int> frames;
-  for (const int frame : item.frames)
-    if (item.recording.times[frame] <= item.fit_until) frames.push_back(frame);
-  return frames;
-}
-
 // Mean and standard deviation of one coordinate over the frames that show it.
 struct Spread {
   double mean = 0, deviation = 0;
@@ -45,15 +38,10 @@ Spread SpreadOf(const PredictedRecording& item, const std::vector<int>& frames, 
   return {mean, std::sqrt(std::max(0.0, squares / seen - mean * mean))};
 }
 
-}  // namespace
-
-std::vector<int> FittedFrames(const PredictedRecording& item) {
-  return item.fitted ? FramesUntil(item) : std::vector<int>();
-}
-
+// Whether the markers stay in place within their noise over the fitted frames.
 bool IsAtRest(const PredictedRecording& item) {
-  if (item.scans != nullptr) return false;
-  const std::vector<int> frames = FramesUntil(item);
+  if (item.ShowsScans()) return false;
+  const std::vector<int> frames = item.FittedFrames();
   // Without noise, rounding of the mean square must not be mistaken for motion.
   constexpr double kRounding = 1e-9;  // m
   const double least = kMoves * EstimateRecordingNoise(item, frames) + kRounding;
@@ -62,6 +50,8 @@ bool IsAtRest(const PredictedRecording& item) {
       if (SpreadOf(item, frames, axis, marker).deviation > least) return false;
   return true;
 }
+
+}  // namespace
 
 bool IsAtRest(const PredictionStudy& study) {
   return std::all_of(study.recordings.begin(), study.recordings.end(),
@@ -72,9 +62,10 @@ std::string RestWarning(const PredictionStudy& study) {
   // Quasi-static frames show none of these in any case, and their jumps, as from load to load, look
   // like noise.
   if (study.scheme == TimeScheme::kQuasiStatic || !IsAtRest(study)) return "";
-  const bool is_one_frame = std::all_of(
-      study.recordings.begin(), study.recordings.end(),
-      [](const PredictedRecording& item) { return !item.fitted || FramesUntil(item).size() == 1; });
+  const bool is_one_frame = std::all_of(study.recordings.begin(), study.recordings.end(),
+                                        [](const PredictedRecording& item) {
+                                          return !item.fitted || item.FittedFrames().size() == 1;
+                                        });
   return fmt::format(
       "{} stiffness and constant loads, but not mass, damping, drag or anything else that needs "
       "motion",
@@ -106,7 +97,7 @@ std::string GravityWarning(const PredictedRecording& item, const PredictionStudy
 }
 
 std::string UnseenWarning(const PredictedRecording& item) {
-  if (item.scans != nullptr) return "";
+  if (item.ShowsScans()) return "";
   const auto is_unseen = [&](int frame) {
     const Eigen::Matrix3Xd& here = item.recording.markers.positions[frame];
     return (here.array().isNaN().colwise().any()).all();
@@ -130,7 +121,7 @@ std::string FitUntilWarning(const PredictedRecording& item) {
 std::string ScanSettingsWarning(const PredictionStudy& study) {
   const bool has_scans =
       std::any_of(study.recordings.begin(), study.recordings.end(),
-                  [](const PredictedRecording& item) { return item.scans != nullptr; });
+                  [](const PredictedRecording& item) { return item.ShowsScans(); });
   if (has_scans || !study.configuration.contains("scan")) return "";
   return "`scan` has no effect: no recording is a scan. The noise of markers and tracked points is "
          "`noise`";
@@ -158,7 +149,7 @@ std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
 }
 
 double RestDeformation(const PredictedRecording& item) {
-  const std::vector<int> frames = FramesUntil(item);
+  const std::vector<int> frames = item.FittedFrames();
   double largest = 0;
   for (Eigen::Index marker = 0; marker < item.recording.markers.places.cols(); ++marker) {
     Eigen::Vector3d mean;

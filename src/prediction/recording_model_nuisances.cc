@@ -8,7 +8,7 @@
 #include "experiment/reference_body.h"
 #include "fem/prescribed_force.h"
 #include "geometry/rotation.h"
-#include "prediction/predicted_motion.h"
+#include "prediction/recording_model.h"
 
 namespace lacuna {
 namespace {
@@ -20,17 +20,36 @@ using Kind = MisfitDirection::Kind;
 void RecordingModel::AddNuisance(const std::string& name, const std::string& unit, double deviation,
                                  MisfitDirection direction) {
   Nuisance nuisance;
-  nuisance.prior.name = item_.name + "." + name;
+  nuisance.prior.name = recording_.name + "." + name;
   nuisance.prior.prior_deviation = nuisance.prior.typical = deviation;
   nuisance.direction = std::move(direction);
   nuisance.unit = unit;
   nuisances_.push_back(std::move(nuisance));
 }
 
+void RecordingModel::AddNuisances(const TetMesh& mesh) {
+  if (recording_.hold) AddHold(mesh);
+  if (recording_.clock_deviation > 0)
+    AddNuisance("clock", "s", recording_.clock_deviation, {Kind::kClock});
+  for (size_t k = 0; k < Reactions().size(); ++k) {
+    const MeasuredReaction& reading = Reactions()[k];
+    if (reading.delay_deviation > 0)
+      AddNuisance(fmt::format("{}.{}_delay", reading.name, reading.Quantity()), "s",
+                  reading.delay_deviation, {.kind = Kind::kCellDelay, .reading = k});
+  }
+  for (const bool turns : {false, true}) {
+    const double deviation = turns ? recording_.turn_deviation : recording_.shift_deviation;
+    for (int axis = 0; deviation > 0 && axis < 3; ++axis)
+      AddNuisance(fmt::format("{}_{}", turns ? "turn" : "shift", "xyz"[axis]), turns ? "rad" : "m",
+                  deviation, {turns ? Kind::kTurn : Kind::kShift, axis});
+  }
+  AddPlacements();
+}
+
 void RecordingModel::AddHold(const TetMesh& mesh) {
-  const std::string where = study_.file.string() + ": hold of " + item_.name;
+  const std::string where = study_.file.string() + ": hold of " + recording_.name;
   const std::vector<int> nodes =
-      NamingWhere(where, [&] { return SelectNodes(item_.hold->region, mesh); });
+      NamingWhere(where, [&] { return SelectNodes(recording_.hold->region, mesh); });
   const Eigen::VectorXi chosen =
       Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
   const Eigen::VectorXd areas = NodeBoundaryAreas(*model_.body);
@@ -44,14 +63,14 @@ void RecordingModel::AddHold(const TetMesh& mesh) {
     force = Eigen::VectorXd::Zero(3 * share.size());
     for (Eigen::Index i = 0; i < share.size(); ++i) force[3 * i + axis] = share[i];
     AddNuisance(fmt::format("hold_force_{}", "xyz"[axis]), "N", weight, std::move(direction));
-    if (!item_.hold->force) continue;
+    if (!recording_.hold->force) continue;
     nuisances_.back().prior.prior_mean = 0;
-    nuisances_.back().prior.start = (*item_.hold->force)[axis];
+    nuisances_.back().prior.start = (*recording_.hold->force)[axis];
   }
 }
 
 void RecordingModel::AddPlacements() {
-  const RecordedObject& object = item_.recording.object;
+  const RecordedObject& object = recording_.recording.object;
   const std::vector<std::string> names = HeldParts(object);
   const std::vector<PlacementDeviation> deviations = PlacementDeviationsOfParts(object);
   for (size_t grip = 0; grip < deviations.size(); ++grip) {
@@ -91,7 +110,7 @@ Perturbation RecordingModel::PerturbationBy(const MisfitDirection& direction,
 Model RecordingModel::PlacedModel(const Eigen::VectorXd& nuisance) const {
   CHECK_EQ(nuisance.size(), static_cast<Eigen::Index>(nuisances_.size()));
   const std::vector<PlacementDeviation> placements =
-      PlacementDeviationsOfParts(item_.recording.object);
+      PlacementDeviationsOfParts(recording_.recording.object);
   Model placed = model_;
   for (size_t grip = 0; grip < placements.size(); ++grip)
     if (!placements[grip].IsExact())
@@ -103,7 +122,7 @@ Model RecordingModel::PlacedModel(const Eigen::VectorXd& nuisance) const {
 PredictionOptions RecordingModel::Options(const Eigen::VectorXd& nuisance) const {
   CHECK_EQ(nuisance.size(), static_cast<Eigen::Index>(nuisances_.size()));
   PredictionOptions options;
-  options.start_time = item_.StartTime();
+  options.start_time = recording_.StartTime();
   options.time_step = study_.time_step;
   options.step.scheme = study_.scheme;
   // Far below the error of the time steps. Smaller tolerances take a quarter more time.
@@ -130,7 +149,7 @@ double RecordingModel::Delay(const Eigen::VectorXd& nuisance) const {
 double RecordingModel::CellDelay(size_t reading, const Eigen::VectorXd& nuisance) const {
   for (size_t k = 0; k < nuisances_.size(); ++k) {
     const MisfitDirection& direction = nuisances_[k].direction;
-    if (direction.kind == Kind::kCellDelay && direction.axis == static_cast<int>(reading))
+    if (direction.kind == Kind::kCellDelay && direction.reading == reading)
       return nuisance[static_cast<Eigen::Index>(k)];
   }
   return 0;

@@ -7,7 +7,7 @@
 namespace lacuna {
 
 double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<int>& frames) {
-  if (item.scans != nullptr) return EstimateScanNoise(*item.scans, frames);
+  if (item.ShowsScans()) return EstimateScanNoise(*item.scans, frames);
   Eigen::VectorXd times(static_cast<Eigen::Index>(frames.size()));
   for (size_t k = 0; k < frames.size(); ++k)
     times[static_cast<Eigen::Index>(k)] = item.recording.times[frames[k]];

@@ -43,13 +43,13 @@ Eigen::VectorXd FitRecordingNuisances(const RecordingModel& model, MeasurementEr
     own.push_back(entry.prior);
     directions.push_back(entry.direction);
   }
-  const PredictedRecording& item = model.item();
+  const PredictedRecording& item = model.recording();
   const std::vector<double>& times = item.recording.times;
   const double start = item.StartTime();
   const double until = start + kNuisanceHorizon * (times[item.frames.back()] - start);
   std::vector<int> beginning = item.frames;
   std::erase_if(beginning, [&](int frame) { return times[frame] > until; });
-  const int rounds = item.scans != nullptr && !own.empty() ? kRounds : 1;
+  const int rounds = item.ShowsScans() && !own.empty() ? kRounds : 1;
   Eigen::VectorXd values;
   for (int round = 0; round < rounds; ++round) {
     std::vector<Observed> kept;

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "analysis/measurement_errors.h"
-#include "prediction/predicted_motion.h"
+#include "prediction/recording_model.h"
 
 namespace lacuna {
 

@@ -50,8 +50,8 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   const Model& model = recording.model();
   Model loaded = recording.PlacedModel(nuisance);
   loaded.effects.insert(loaded.effects.end(), further.begin(), further.end());
-  CHECK(recording.Markers() != nullptr) << "only markers are replayed";
-  const std::vector<int>& frames = recording.item().frames;
+  CHECK(!recording.recording().ShowsScans()) << "only markers are replayed";
+  const std::vector<int>& frames = recording.recording().frames;
   const PredictionOptions options = recording.Options(nuisance);
   motion.nuisance = nuisance;
   motion.delay = recording.Delay(nuisance);
@@ -61,7 +61,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   // The start of the motion is visited too; it comes after the frames at rest.
   std::vector<double> times;
   for (const int frame : frames)
-    times.push_back(recording.item().recording.times[frame] - motion.delay);
+    times.push_back(recording.recording().recording.times[frame] - motion.delay);
   const auto start = std::upper_bound(times.begin(), times.end(), options.start_time);
   const int at_start = static_cast<int>(start - times.begin());
   times.insert(start, options.start_time);

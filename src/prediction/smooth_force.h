@@ -7,8 +7,10 @@
 #define LACUNA_PREDICTION_SMOOTH_FORCE_H_
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "fem/model.h"
+#include "prediction/replayed_motion.h"
 
 namespace lacuna {
 
@@ -33,6 +35,9 @@ struct SmoothForce {
   KnotWeight At(double time) const;
   // The amplitudes at a time, 6 × 1, m/s².
   Eigen::VectorXd AmplitudesAt(double time) const;
+  // The derivative of AmplitudesAt(time) by the amplitudes, column by column: 6 × 6·knots, the
+  // weights of the knots as hat functions of time.
+  Eigen::MatrixXd HatFunctions(double time) const;
   // The force density g at the nodes, 3 × n, N/m³.
   Eigen::Matrix3Xd DensityAt(double time) const;
   // Nodal forces per unit of each amplitude, 3n × 6, N/(m/s²).
@@ -41,8 +46,16 @@ struct SmoothForce {
   EffectList Effects() const;
 };
 
-// A force of zero with `knots` (≥ 2, CHECK) knots from `start` to `end` (s, later than the start).
-SmoothForce MakeSmoothForce(const Model& model, double start, double end, int knots);
+// A force of zero over a replayed motion of a recording: a knot for each frame after the start, but
+// not more than `most_knots`. Nothing where there are fewer than six such frames, too few to
+// determine how a force changes with time.
+std::optional<SmoothForce> SmoothForceDuring(const RecordingModel& recording,
+                                             const ReplayedMotion& motion, int most_knots);
+
+// A root L of a prior covariance of the amplitudes, column by column (6·knots square). L Lᵀ
+// correlates the amplitudes of one shape at the knots i and j by exp(−|i − j| / persistence), and
+// no others. Their standard deviation is 1 for ψ_0 and `deviation_of_mode` for ψ_1, m/s².
+Eigen::MatrixXd PersistentPriorRoot(int knots, double persistence, double deviation_of_mode = 1);
 
 }  // namespace lacuna
 

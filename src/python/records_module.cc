@@ -116,6 +116,14 @@ void DefineRecordings(py::module_* module) {
           "predicted",
           [](const Motion& m) { return AsPoints(m.residuals.measured + m.residuals.difference); },
           "(frames, points, 3); of a scan, the measured places moved along the surface's normal")
+      .def_property_readonly(
+          "sigma",
+          [](const Motion& m) {
+            const Eigen::MatrixXd& sigma = m.residuals.sigma;
+            return Array({sigma.cols(), sigma.rows()}, sigma.data());
+          },
+          "(frames, points): standard deviation of the noise of each coordinate of a point, of a "
+          "scan along the normal; NaN where it was not seen; empty in runs of earlier versions")
       .def_readonly("is_scan", &Motion::is_scan);
 }
 

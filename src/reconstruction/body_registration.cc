@@ -3,12 +3,69 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
+#include <numbers>
 
+#include "geometry/nearest.h"
 #include "geometry/rigid_fit.h"
 #include "reconstruction/recorded_states.h"
 
 namespace lacuna {
+namespace {
+
+std::vector<Eigen::Index> FiniteColumns(const Eigen::Matrix3Xd& points) {
+  std::vector<Eigen::Index> finite;
+  for (Eigen::Index j = 0; j < points.cols(); ++j)
+    if (points.col(j).allFinite()) finite.push_back(j);
+  return finite;
+}
+
+// The largest standard deviation in a direction along the surface, for each root of the trace of a
+// covariance, σ_n² + 2 σ_t²: that of a displacement which is exact along the normal. CPD determines
+// that component far better (CpdOptions::tangential_weight); with equal components the result is
+// too large by √1.5.
+Eigen::VectorXd TangentialDeviation(const Eigen::VectorXd& root_of_trace) {
+  return root_of_trace / std::numbers::sqrt2;
+}
+
+// The displacements of `at` (3 × n) by a continuous motion that carries `from` to `to` (3 × m;
+// pairs that are not finite are ignored): the rigid motion of these points, and the mean of the
+// remaining displacements of the nearest of them, weighted by ((R − d) / (R d))² (Franke & Nielson,
+// Int. J. Numer. Meth. Eng. 15, 1980). d is the distance of a point, R that of the first that is
+// left out. An affine motion would amplify the bending of a slender body across its thickness.
+Eigen::Matrix3Xd InterpolatedMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
+                                    const Eigen::Matrix3Xd& at) {
+  constexpr Eigen::Index kMostNear = 8;
+  const std::vector<Eigen::Index> both = FiniteColumns(from + to);
+  if (both.empty()) return Eigen::Matrix3Xd::Zero(3, at.cols());
+  const Eigen::Matrix3Xd known = from(Eigen::all, both);
+  const Eigen::Matrix3Xd target = to(Eigen::all, both);
+  const Eigen::Isometry3d motion = FitRigidMotion(known, target).motion;
+  const Eigen::Matrix3Xd remaining = target - motion * known;
+  const Eigen::Index near = std::min(kMostNear, known.cols());
+  const bool is_limited = near < known.cols();
+  const PointHits hits =
+      PointSearch(known).Nearest(at, static_cast<int>(is_limited ? near + 1 : near));
+  // At a smaller distance a point is as good as reached.
+  const double least = std::max(1e-6 * BoundingBoxDiagonal(known), 1e-12);
+  Eigen::Matrix3Xd displacement = motion * at - at;
+  for (Eigen::Index i = 0; i < at.cols(); ++i) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double weights = 0;
+    for (Eigen::Index k = 0; k < near; ++k) {
+      const double distance = std::max(hits.distance(k, i), least);
+      const double root =
+          1 / distance - (is_limited ? 1 / std::max(hits.distance(near, i), least) : 0);
+      sum += root * root * remaining.col(hits.index(k, i));
+      weights += root * root;
+    }
+    if (weights > 0) displacement.col(i) += sum / weights;
+  }
+  return displacement;
+}
+
+}  // namespace
 
 BodyRegistration::BodyRegistration(const ReconstructionStudy& study, const Body& body,
                                    const std::vector<FrameState>& states,
@@ -19,8 +76,20 @@ BodyRegistration::BodyRegistration(const ReconstructionStudy& study, const Body&
       tracked_(tracked),
       warnings_(*warnings),
       are_identified_(HasIdentifiedPoints(study, states)) {
-  if (const FrameState& front = states.front(); front.tracked.cols() > 0)
-    tracks_ = TrackOnSurface(body.boundary, are_identified_ ? front.tracked : front.cloud.points);
+  const Eigen::Matrix3Xd places = FindPlacesAtRest(study, states).tracked;
+  if (places.cols() == 0) return;
+  const std::vector<Eigen::Index> known = FiniteColumns(places);
+  if (!are_identified_) {
+    tracks_ = TrackOnSurface(body.boundary, places(Eigen::all, known));
+    return;
+  }
+  tracks_ = TrackOnSurface(body.boundary, places);
+  if (const Eigen::Index unknown = places.cols() - std::ssize(known); unknown > 0)
+    warnings_.push_back(fmt::format(
+        "{} of {} tracked points are used in no frame, because it is not known where they are on "
+        "the undeformed object: they have no `marker_places`, and frame {}, the first that is "
+        "followed, does not show them",
+        unknown, places.cols(), study.frames.front()));
 }
 
 Eigen::Matrix3Xd BodyRegistration::Shift(size_t k, const Eigen::Matrix3Xd& nodes) {
@@ -28,7 +97,11 @@ Eigen::Matrix3Xd BodyRegistration::Shift(size_t k, const Eigen::Matrix3Xd& nodes
     const Eigen::Matrix3Xd& rest = body_.mesh.nodes;
     return tracked_->DisplacementAt(k, rest) - tracked_->DisplacementAt(k - 1, rest);
   }
-  if (are_identified_ && SeenBeside(k) < CpdResult::kFewestPoints) return RigidShift(k, nodes);
+  if (are_identified_) {
+    const Eigen::Matrix3Xd from =
+        k > 0 ? states_[k - 1].tracked : PointsAt(tracks_, body_.boundary, nodes);
+    return InterpolatedMotion(from, states_[k].tracked, nodes);
+  }
   const PointCloud from = k > 0 ? StatePoints(states_[k - 1]) : SimulatedSurface(nodes);
   // The search starts from the last motion, because motions are continuous.
   last_motion_ = Registered(k, from, &last_motion_).field;
@@ -40,10 +113,11 @@ BodyRegistration::Correspondence BodyRegistration::Register(size_t k,
                                                             const Eigen::Matrix3Xd& nodes) const {
   if (are_identified_) return {};
   if (tracked_ != nullptr)
-    return {TrackedTarget(k), tracked_->DeviationAt(k, body_.boundary.surface.vertices)};
+    return {TrackedTarget(k),
+            TangentialDeviation(tracked_->DeviationAt(k, body_.boundary.surface.vertices))};
   const PointCloud points = RegistrationPoints(nodes);
   const Alignment aligned = Registered(k, points);
-  return {points.points + aligned.displacement, aligned.standard_deviation};
+  return {points.points + aligned.displacement, TangentialDeviation(aligned.standard_deviation)};
 }
 
 Observations BodyRegistration::Observe(size_t k, const Eigen::Matrix3Xd& nodes,
@@ -94,19 +168,6 @@ BodyRegistration::Residual BodyRegistration::Measure(size_t k,
   return residual;
 }
 
-// The number of points that are seen in state k, or in the state before it if that shows fewer.
-Eigen::Index BodyRegistration::SeenBeside(size_t k) const {
-  const Eigen::Index here = states_[k].cloud.Size();
-  return k > 0 ? std::min(here, states_[k - 1].cloud.Size()) : here;
-}
-
-// The rigid motion of identified points that are too few for CPD. In the first state they are where
-// the undeformed body has them.
-Eigen::Matrix3Xd BodyRegistration::RigidShift(size_t k, const Eigen::Matrix3Xd& nodes) const {
-  if (k == 0) return Eigen::Matrix3Xd::Zero(3, nodes.cols());
-  return FitRigidMotion(states_[k - 1].tracked, states_[k].tracked).motion * nodes - nodes;
-}
-
 Eigen::Matrix3Xd BodyRegistration::TrackedTarget(size_t k) const {
   const Eigen::Matrix3Xd& rest = body_.boundary.surface.vertices;
   return rest + tracked_->DisplacementAt(k, rest);
@@ -117,8 +178,8 @@ PointCloud BodyRegistration::SimulatedSurface(const Eigen::Matrix3Xd& nodes) con
   return {surface.vertices, VertexNormals(surface)};
 }
 
-// The points that represent the model in a registration: the places of the tracked points that the
-// first state shows, which exclude sides that are never seen, or its whole surface.
+// The points that represent the model in a registration: the places of the tracked points, which
+// exclude sides that are never seen, or its whole surface.
 PointCloud BodyRegistration::RegistrationPoints(const Eigen::Matrix3Xd& nodes) const {
   if (tracks_.Count() == 0) return SimulatedSurface(nodes);
   return {PointsAt(tracks_, body_.boundary, nodes), {}};

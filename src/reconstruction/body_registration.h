@@ -18,15 +18,16 @@
 namespace lacuna {
 
 // Node positions are 3 × nodes of the body, m. Tracked points that identify themselves
-// (HasIdentifiedPoints) are where they were seen; other points are found by CPD, whose failures
-// become warnings that name the frame.
+// (HasIdentifiedPoints) are where they were seen, and are attached to the body at their places on
+// it (FindPlacesAtRest) by an offset from its surface that does not rotate; a warning says how many
+// have none. Other points are found by CPD, whose failures become warnings that name the frame.
 class BodyRegistration {
  public:
   // The places of points of the body in a state, found by CPD. Where it failed, they are NaN and
   // their deviation is infinite. Empty where tracked points identify themselves.
   struct Correspondence {
     Eigen::Matrix3Xd target;  // 3 × n, m
-    Eigen::VectorXd sigma;    // m, of each target, tangential to the surface
+    Eigen::VectorXd sigma;    // m, of each target, in each direction along the surface
   };
   // D of Eq. 1, m, as FollowedFrame (follow.h) has it.
   struct Residual {
@@ -46,8 +47,9 @@ class BodyRegistration {
   }
 
   // The displacements of `nodes` from state k − 1 to state k (the paper's displacement field
-  // between consecutive surfaces). The simulated surface takes the place of a state before the
-  // first.
+  // between consecutive surfaces), interpolated between identified points that both states show.
+  // The simulated surface, or the places of those points on it, take the place of a state before
+  // the first.
   Eigen::Matrix3Xd Shift(size_t k, const Eigen::Matrix3Xd& nodes);
 
   Correspondence Register(size_t k, const Eigen::Matrix3Xd& nodes) const;
@@ -60,8 +62,6 @@ class BodyRegistration {
   Residual Measure(size_t k, const Eigen::Matrix3Xd& nodes) const;
 
  private:
-  Eigen::Index SeenBeside(size_t k) const;
-  Eigen::Matrix3Xd RigidShift(size_t k, const Eigen::Matrix3Xd& nodes) const;
   Eigen::Matrix3Xd TrackedTarget(size_t k) const;
   PointCloud SimulatedSurface(const Eigen::Matrix3Xd& nodes) const;
   PointCloud RegistrationPoints(const Eigen::Matrix3Xd& nodes) const;
@@ -74,8 +74,8 @@ class BodyRegistration {
   const TrackedFrames* tracked_;
   std::vector<std::string>& warnings_;
   const bool are_identified_;
-  // All tracked points, or those that the first state shows where they do not identify themselves;
-  // empty for scans.
+  // All tracked points, or those with known places where they do not identify themselves; empty for
+  // scans.
   SurfaceTracks tracks_;
   DisplacementField last_motion_;
 };

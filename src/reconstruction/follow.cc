@@ -25,14 +25,6 @@
 namespace lacuna {
 namespace {
 
-Eigen::Matrix3Xd AsPoints(const Eigen::VectorXd& stacked) {
-  return Eigen::Map<const Eigen::Matrix3Xd>(stacked.data(), 3, stacked.size() / 3);
-}
-
-Eigen::VectorXd Stacked(const Eigen::Matrix3Xd& points) {
-  return Eigen::Map<const Eigen::VectorXd>(points.data(), points.size());
-}
-
 class Follower {
  public:
   Follower(const ReconstructionStudy& study, const ReferenceBody& reference,
@@ -83,7 +75,7 @@ class Follower {
 
     FollowedFrame frame;
     frame.time = state.time;
-    const Eigen::Matrix3Xd before = AsPoints(history_.position);
+    const Eigen::Matrix3Xd before = history_.position.reshaped(3, Eigen::AutoSize);
     const Eigen::Matrix3Xd shift = registration_.Shift(k, before);
     frame.pseudo_force = PseudoForce(shift, time_step);
     const RecordedGrip* lost = grips_->Extend(state.time, before, before + shift, MarkersIn(k));
@@ -93,7 +85,7 @@ class Follower {
                       "marker_places are missing",
                       study_.recording.file.string(), TimeText(state.time), lost->region.name));
 
-    Eigen::VectorXd start = Stacked(before + shift);
+    Eigen::VectorXd start = (before + shift).reshaped();
     grips_->Place(state.time, &start);
     MotionHistory from = history_;
     if (time_step == 0) from.time = state.time;
@@ -124,14 +116,14 @@ class Follower {
     force_ = fit.force;
     coefficients_ = fit.coefficients;
 
-    frame.position = AsPoints(history_.position);
+    frame.position = history_.position.reshaped(3, Eigen::AutoSize);
     // Without fitted forces the distance is the result.
     if (forces_.HasUnknowns() && state.tracked.cols() == 0) {
       const TriMesh surface = BoundaryAt(body.boundary, frame.position);
       const std::string problem = FarFromScan(surface, state.cloud.points);
       if (!problem.empty()) return Fail("scan", problem, &frame);
     }
-    frame.force = AsPoints(fit.force + KnownForces());
+    frame.force = (fit.force + KnownForces()).reshaped(3, Eigen::AutoSize);
     MeasureResidual(k, &frame);
     WarnOfOtherEquilibrium(k, fit);
     const bool is_stopped = fit.status == ForceFit::Status::kEndedEarly;
@@ -151,7 +143,7 @@ class Follower {
   // Warns where the step under the fitted forces leads elsewhere than the fit.
   void WarnOfOtherEquilibrium(size_t k, const ForceFit& fit) {
     if (!forces_.HasUnknowns() || motion_.noise <= 0) return;
-    const Eigen::Matrix3Xd apart = AsPoints(history_.position - fit.position);
+    const Eigen::Matrix3Xd apart = (history_.position - fit.position).reshaped(3, Eigen::AutoSize);
     const double rms = std::sqrt(apart.squaredNorm() / static_cast<double>(apart.cols()));
     constexpr double kFar = 3;
     if (rms <= kFar * motion_.noise) return;
@@ -169,14 +161,14 @@ class Follower {
   ForceFit FitForces(size_t k, const StepEquation& equation, Eigen::VectorXd start,
                      FollowedFrame* frame) {
     const BodyRegistration::Correspondence correspondence =
-        registration_.Register(k, AsPoints(start));
+        registration_.Register(k, start.reshaped(3, Eigen::AutoSize));
     StepForceFitter fitter(model_, equation, forces_, start, coefficients_);
     ForceFit fit;
     for (int round = 0; round < study_.follow.alignment_rounds; ++round) {
       ThrowIfInterrupted();
       ThrowIfOverMemoryLimit();
-      const Observations seen =
-          registration_.Observe(k, AsPoints(start), correspondence, motion_.noise);
+      const Observations seen = registration_.Observe(k, start.reshaped(3, Eigen::AutoSize),
+                                                      correspondence, motion_.noise);
       frame->observations = static_cast<int>(seen.Count());
       // The prior of free forces is centred at those of the last frame, and that of coefficients at
       // 0: as a random walk, coefficients that the scans do not determine would drift.
@@ -278,7 +270,7 @@ std::string FarFromScan(const TriMesh& surface, const Eigen::Matrix3Xd& points) 
   if (points.cols() == 0) return "";
   const double size = BoundingBoxDiagonal(surface.vertices);
   const Eigen::VectorXd distances = SurfaceSearch(surface).Nearest(points).distance;
-  const double middle = Median({distances.begin(), distances.end()});
+  const double middle = Median({distances.data(), distances.data() + distances.size()});
   if (middle <= kFarFromScan * size) return "";
   return fmt::format(
       "half of the scanned points are farther than {:.3g} mm from the model, which is {:.3g} mm "

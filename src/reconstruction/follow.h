@@ -30,8 +30,7 @@ struct FollowedFrame {
   // D of Eq. 1 after the step, m: align(p, S) − p, from each boundary vertex to its place in the
   // state (3 × boundary vertices). Where tracked points identify themselves (HasIdentifiedPoints)
   // no alignment is needed: from the place of each on the model to where it was seen (3 × tracked
-  // points; NaN where it was not, and for a point that the first state does not show, whose place
-  // on the model is not known).
+  // points; NaN where it was not, and for a point whose place on the model is not known).
   Eigen::Matrix3Xd residual;
   // Why D was not measured, in which case all of it is NaN: the registration failed, or no tracked
   // point was seen. Empty where it was measured, and in a frame that was not followed.

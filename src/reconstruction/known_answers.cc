@@ -68,6 +68,21 @@ TriMesh ReadTrueSurface(const ValidationSettings& validation, int frame) {
   return ReadTrueSurface(validation.true_surfaces.parent_path(), frame);
 }
 
+void RequireLengthUnit(const std::filesystem::path& file, const Eigen::Matrix3Xd& points,
+                       const Eigen::Matrix3Xd& seen) {
+  constexpr double kMostSizes = 10;
+  const Eigen::AlignedBox3d here = BoundingBox(points), there = BoundingBox(seen);
+  const double size = there.diagonal().norm(), distance = (here.center() - there.center()).norm();
+  if (!(size > 0) || !(std::max(here.diagonal().norm(), distance) > kMostSizes * size)) return;
+  throw InputError(
+      SourcePosition{file.string()},
+      fmt::format(
+          "has points in a box of {:.3g} m, {:.3g} m from the centre of the recorded ones, "
+          "whose box is {:.3g} m across; its lengths must be in m, in the coordinate system "
+          "of the recording",
+          here.diagonal().norm(), distance, size));
+}
+
 std::vector<std::pair<std::string, std::filesystem::path>> FilesOfKnownAnswers(
     const ValidationSettings& validation, const std::vector<int>& frames) {
   std::vector<std::pair<std::string, std::filesystem::path>> files;

@@ -39,6 +39,13 @@ Eigen::MatrixXd ReadTrueForces(const ValidationSettings& validation,
                                const std::vector<int>& frames);
 TriMesh ReadTrueSurface(const ValidationSettings& validation, int frame);
 
+// Throws InputError naming `file`, in which `points` (3 × n) were read as m, where they cannot be
+// those of the object that a frame shows at `seen` (3 × n, m): their box, or the distance between
+// the centres of both, is more than ten times as large. Millimetres would be a thousand times as
+// large.
+void RequireLengthUnit(const std::filesystem::path& file, const Eigen::Matrix3Xd& points,
+                       const Eigen::Matrix3Xd& seen);
+
 // All files that are read for these frames, each with a name for the manifest of a run.
 std::vector<std::pair<std::string, std::filesystem::path>> FilesOfKnownAnswers(
     const ValidationSettings& validation, const std::vector<int>& frames);

@@ -1,12 +1,10 @@
 #include "reconstruction/reconstruction.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "core/interrupt.h"
 #include "experiment/frame_states.h"
-#include "experiment/reference_body.h"
+#include "experiment/reference_body_stage.h"
 #include "experiment/scan_settings.h"
 #include "reconstruction/follow.h"
 #include "reconstruction/known_answers.h"
@@ -22,9 +20,8 @@ namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
 constexpr int kStatesVersion = 5;
-constexpr int kReferenceVersion = 3;
-constexpr int kMotionVersion = 6;
-constexpr int kResultsVersion = 5;
+constexpr int kMotionVersion = 7;
+constexpr int kResultsVersion = 6;
 
 InputFiles InputsOf(const ReconstructionStudy& study) {
   InputFiles inputs;
@@ -64,16 +61,9 @@ RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress
 
   std::map<std::string, std::string> behind{{"surfaces", run.ResultHash("surfaces")}};
   for (const auto& [name, hash] : inputs) behind[name] = hash;
-  const auto reference = RunStage<ReferenceBody>(
-      &run, {"mesh", kReferenceVersion, part({"mesh"}), behind}, progress,
-      [&] {
-        progress->Begin("mesh", 0);
-        ReferenceBody body = MakeReferenceBody(study, states.front());
-        progress->End(
-            fmt::format("{} nodes, {} tetrahedra", body.mesh.NodeCount(), body.mesh.TetCount()));
-        return body;
-      },
-      SaveReferenceBody, ReadReferenceBody);
+  const ReferenceBody reference =
+      RunReferenceBodyStage(&run, part({"mesh"}), behind, progress,
+                            [&] { return MakeReferenceBody(study, states.front()); });
 
   behind["mesh"] = run.ResultHash("mesh");
   const auto motion = RunStage<FollowedMotion>(
@@ -98,7 +88,7 @@ RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress
       },
       [&](const RunRecord& value, const std::filesystem::path& folder) {
         SaveRunRecord(value, folder);
-        WriteFields(study, states, motion, value, folder);
+        WriteFields(study, states, motion, folder);
         if (std::any_of(motion.frames.begin(), motion.frames.end(),
                         [](const FollowedFrame& frame) { return frame.solver.usable; }))
           WriteMotionFile(ShownReconstruction(study, states, motion), folder / "shown_motion.json");

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "analysis/measure.h"
+#include "core/atomic_file.h"
 #include "core/median.h"
 #include "experiment/frame_states.h"
 #include "fit/force_model.h"
@@ -27,36 +30,42 @@ size_t FirstFollowed(const ReconstructionStudy& study) {
   return FirstFrameIsReference(study) ? 1 : 0;
 }
 
-// Root mean square distance between those columns that are known in both.
-double RmsError(const Eigen::Matrix3Xd& found, const Eigen::Matrix3Xd& truth) {
-  return Summarise((found - truth).colwise().norm().transpose()).rms;
-}
-
-double MeanSpacing(const Eigen::Matrix3Xd& first, const Eigen::Matrix3Xd& second) {
+// The mean distance to the nearest other of these points, m; none if fewer than two are known.
+std::optional<double> MeanSpacing(const Eigen::Matrix3Xd& first, const Eigen::Matrix3Xd& second) {
   Eigen::Matrix3Xd all(3, first.cols() + second.cols());
   all << first, second;
   std::vector<Eigen::Index> known;
   for (Eigen::Index j = 0; j < all.cols(); ++j)
     if (all.col(j).allFinite()) known.push_back(j);
+  if (known.size() < 2) return std::nullopt;
   const Eigen::Matrix3Xd points = all(Eigen::all, known);
   return PointSearch(points).Nearest(points, 2).distance.row(1).mean();
 }
 
 void MeasureHeldOut(const ReconstructionStudy& study, const std::vector<FrameState>& states,
                     const FollowedMotion& motion, RunRecord* record) {
-  const Eigen::Matrix3Xd& rest = states.front().held_out;
-  if (rest.cols() == 0) return;
-  const SurfaceTracks tracks = TrackOnSurface(motion.body->boundary, rest);
+  const PlacesAtRest rest = FindPlacesAtRest(study, states);
+  if (rest.held_out.cols() == 0) return;
+  const SurfaceTracks tracks = TrackOnSurface(motion.body->boundary, rest.held_out);
   double worst = 0;
+  std::vector<char> compared(static_cast<size_t>(tracks.Count()), 0);
   for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
     if (!motion.frames[k].solver.usable) continue;
-    worst =
-        std::max(worst, RmsError(PointsAt(tracks, motion.body->boundary, motion.frames[k].position),
-                                 states[k].held_out));
+    const Eigen::VectorXd errors =
+        (PointsAt(tracks, motion.body->boundary, motion.frames[k].position) - states[k].held_out)
+            .colwise()
+            .norm()
+            .transpose();
+    for (Eigen::Index j = 0; j < errors.size(); ++j)
+      if (!std::isnan(errors[j])) compared[static_cast<size_t>(j)] = 1;
+    worst = std::max(worst, Summarise(errors).rms);  // 0 if no point was compared
   }
-  record->measures["held_out_points"] = static_cast<double>(rest.cols());
+  const auto points = std::count(compared.begin(), compared.end(), 1);
+  record->measures["held_out_points"] = static_cast<double>(points);
+  if (points == 0) return;
   record->measures["held_out_rms_max_m"] = worst;
-  record->measures["held_out_spacing_m"] = MeanSpacing(rest, states.front().tracked);
+  if (const auto spacing = MeanSpacing(rest.held_out, rest.tracked))
+    record->measures["held_out_spacing_m"] = *spacing;
 }
 
 void MeasureTrueSurfaces(const ReconstructionStudy& study, const FollowedMotion& motion,
@@ -98,7 +107,8 @@ void MeasureTruePositions(const ReconstructionStudy& study, const FollowedMotion
   if (count == 0) return;
   record->measures["true_position_mean_error_m"] = error_sum / static_cast<double>(count);
   record->measures["true_displacement_max_m"] = largest;
-  record->measures["true_position_mean_error"] = error_sum / static_cast<double>(count) / largest;
+  if (largest > 0)
+    record->measures["true_position_mean_error"] = error_sum / static_cast<double>(count) / largest;
 }
 
 void MeasureTrueForces(const ReconstructionStudy& study, const FollowedMotion& motion,
@@ -113,8 +123,7 @@ void MeasureTrueForces(const ReconstructionStudy& study, const FollowedMotion& m
     errors.push_back((motion.frames[k].force.rowwise().sum() - known).norm() / known.norm());
   }
   if (errors.empty()) return;
-  std::sort(errors.begin(), errors.end());
-  record->measures["true_force_median_error"] = errors[errors.size() / 2];
+  record->measures["true_force_median_error"] = Median(std::move(errors));
 }
 
 // Draws the model's surface at the last frame that was followed, coloured by |D|, with the scan's
@@ -201,9 +210,16 @@ std::string FarFromTrackedWarning(const ReconstructionStudy& study,
       "in {} of {} followed frames the model stays far from the tracked points: in frame {}, half "
       "of them are farther than {:.3g} mm from their places on the model, {:.0f} times the noise "
       "and {:.2g} % of the object's size. Likely causes are forces that cannot produce the motion "
-      "(`region` and `force_scale` under `forces`), a wrong clamp, and points of another object",
+      "(`region` and `force_scale` under `forces`), a wrong clamp, wrong `marker_places`, and "
+      "points "
+      "of another object",
       far, followed, study.frames[worst], 1e3 * largest, largest / motion.noise,
       100 * largest / size);
+}
+
+RunForces RunForcesOf(const ForceSettings& forces) {
+  if (forces.AreFitted()) return RunForces::kFitted;
+  return forces.kind == ForceSettings::Kind::kKnown ? RunForces::kKnown : RunForces::kNone;
 }
 
 }  // namespace
@@ -212,6 +228,8 @@ RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& refe
                      const std::vector<FrameState>& states, const FollowedMotion& motion) {
   RunRecord record;
   record.recording = study.recording.name;
+  record.forces = RunForcesOf(study.follow.forces);
+  record.frames_not_tried = static_cast<int>(states.size() - motion.frames.size());
   record.object_size = BoundingBoxDiagonal(motion.body->mesh.nodes);
   record.mesh = reference.quality;
   record.warnings = study.recording.warnings;
@@ -291,8 +309,8 @@ RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& refe
 }
 
 void WriteFields(const ReconstructionStudy& study, const std::vector<FrameState>& states,
-                 const FollowedMotion& motion, const RunRecord& /*record*/,
-                 const std::filesystem::path& folder) {
+                 const FollowedMotion& motion, const std::filesystem::path& folder) {
+  MakeFolder(folder / "fields");
   const Body& body = *motion.body;
   const ResidualAtVertices residuals(study, states, motion);
   std::vector<TimedFile> bodies, surfaces, scans;
@@ -304,7 +322,6 @@ void WriteFields(const ReconstructionStudy& study, const std::vector<FrameState>
     const auto file = [&](const char* what, const char* extension) {
       return folder / "fields" / fmt::format("{}_{:04}.{}", what, study.frames[k], extension);
     };
-    std::filesystem::create_directories(folder / "fields");
     WriteVtu(file("body", "vtu"), deformed,
              {{{"displacement_m", frame.position - body.mesh.nodes},
                {"force_N", frame.force},

@@ -27,23 +27,37 @@ namespace lacuna {
 //   residual_frames                number of frames after the reference in which D was measured
 //   residual_per_point_m           mean of |D| per point over these frames
 //   surface_distance_mean_m        mean over the frames after the reference
-//   held_out_rms_max_m             largest rms error of the held-out points in a frame
-//   held_out_spacing_m             their mean distance to the nearest other tracked point
+//   held_out_points                number of held-out points that were compared with the model in
+//                                  some frame
+//   held_out_rms_max_m             largest rms error of the held-out points in a frame; absent
+//   where
+//                                  none was compared
+//   held_out_spacing_m             mean distance of all tracked points to the nearest other one on
+//                                  the undeformed body; absent where none was compared, and where
+//                                  fewer than two of these places are known
 //   true_surface_distance_mean_m   mean distance of the true surface's vertices from the simulated
 //                                  surface over all frames after the reference
 //   true_surface_distance_max_m    the same for the worst frame
-//   true_position_mean_error       mean error of the true points over the largest displacement
+//   true_position_mean_error_m     mean error of the true points
+//   true_displacement_max_m        their largest displacement
+//   true_position_mean_error       the ratio of both; absent where the points do not move
 //   true_force_median_error        median over the frames of |F − F_true| / |F_true|
 // Throws InputError where the files of the known truths cannot be used (known_answers.h).
 RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& reference,
                      const std::vector<FrameState>& states, const FollowedMotion& motion);
 
-// Writes body.pvd with displacement_m and force_N at the nodes, surface.pvd with residual_m and the
-// distance to the scan on the boundary, and scan.pvd with the scanned points and their distance to
-// the model. Throws InputError where a file cannot be written.
+// Writes to `folder` the frames that were followed, as three time series whose files are in
+// <folder>/fields:
+//   body.pvd      the deformed mesh: displacement_m, force_N and pseudo_force_N (FollowedFrame) at
+//                 the nodes;
+//   surface.pvd   its boundary: residual_m (D) and residual_length_m at the vertices, NaN where D
+//                 was not measured;
+//   scan.pvd      the scanned points: distance_to_model_m, to the nearest point of the boundary.
+// last_frame.png shows the boundary in the last frame that was followed, coloured by the length of
+// D, and the scanned points; it is not written if no frame was followed, and a picture that cannot
+// be drawn is a warning. Throws InputError where a file cannot be written.
 void WriteFields(const ReconstructionStudy& study, const std::vector<FrameState>& states,
-                 const FollowedMotion& motion, const RunRecord& record,
-                 const std::filesystem::path& folder);
+                 const FollowedMotion& motion, const std::filesystem::path& folder);
 
 }  // namespace lacuna
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "experiment/frame_states.h"
 #include "experiment/listed_regions.h"
 #include "experiment/scan_settings.h"
 #include "geometry/mesh_io.h"
@@ -93,6 +94,30 @@ FollowSettings ReadFollow(const Config& config, const std::filesystem::path& dat
   return follow;
 }
 
+// Warns of keys that have no effect with the model of the forces or the kind of the frames. They
+// are not refused, because sweeps and experiments that build on others change the model alone.
+void WarnOfIgnoredKeys(const Config& config, ReconstructionStudy* study) {
+  using Kind = ForceSettings::Kind;
+  std::vector<std::string>& warnings = study->recording.warnings;
+  if (const auto forces = config.OptionalChild("forces")) {
+    const Kind kind = study->follow.forces.kind;
+    const auto warn = [&](const char* key, bool acts, const char* models) {
+      if (forces->Has(key) && !acts)
+        warnings.push_back(fmt::format("forces.{} has no effect with forces.model {}, only with {}",
+                                       key, forces->Text("model", "smooth"), models));
+    };
+    warn("length", kind == Kind::kSmooth, "smooth");
+    warn("traction_scale", kind == Kind::kSmooth, "smooth");
+    warn("force_scale", kind == Kind::kFootprint || kind == Kind::kNodal, "footprint and nodal");
+    warn("hold_net_force", kind == Kind::kSmooth || kind == Kind::kNodal, "smooth and nodal");
+  }
+  if (const auto fit = config.OptionalChild("fit"); fit && !IsScan(study->recording))
+    for (const char* key : {"tangential_noise", "reach"})
+      if (fit->Has(key))
+        warnings.push_back(
+            fmt::format("fit.{} has no effect on markers and tracked points, only on scans", key));
+}
+
 std::vector<int> ReadFrames(const Config& config, const Recording& recording) {
   const int count = recording.FrameCount();
   int first = 0, last = count - 1, every = 1;
@@ -108,8 +133,9 @@ std::vector<int> ReadFrames(const Config& config, const Recording& recording) {
 
 // Reads the known answers once, so that a file that is missing or has the wrong shape is reported
 // before the computation rather than after it.
-void CheckKnownAnswers(const Config& entry, const ValidationSettings& validation,
-                       const std::vector<int>& frames) {
+void CheckKnownAnswers(const Config& entry, const ReconstructionStudy& study) {
+  const ValidationSettings& validation = study.validation;
+  const std::vector<int>& frames = study.frames;
   const auto check = [&entry](const char* key, const std::filesystem::path& path,
                               const auto& read) {
     if (path.empty()) return;
@@ -125,10 +151,33 @@ void CheckKnownAnswers(const Config& entry, const ValidationSettings& validation
       throw InputError("expected the folder `truth` of a simulated recording");
     for (const int frame : frames) ReadTrueSurface(validation, frame);
   });
-  check("true_mesh", validation.true_mesh, [&] { ReadTetMesh(validation.true_mesh); });
-  check("true_positions", validation.true_positions,
-        [&] { ReadTruePositions(validation, frames); });
+  Eigen::Matrix3Xd first, last;  // the points of these frames
+  if (!validation.true_mesh.empty()) {
+    first = LoadFrame(study.recording, frames.front()).cloud.points;
+    last = LoadFrame(study.recording, frames.back()).cloud.points;
+  }
+  check("true_mesh", validation.true_mesh, [&] {
+    RequireLengthUnit(validation.true_mesh, ReadTetMesh(validation.true_mesh).mesh.nodes, first);
+  });
+  check("true_positions", validation.true_positions, [&] {
+    const TruePositions truth = ReadTruePositions(validation, frames);
+    RequireLengthUnit(validation.true_positions, truth.At(frames.front()), first);
+    RequireLengthUnit(validation.true_positions, truth.At(frames.back()), last);
+  });
   check("true_forces", validation.true_forces, [&] { ReadTrueForces(validation, frames); });
+}
+
+void RequireHeldOutPoints(const Config& entry, const Recording& recording, int hold_out_every) {
+  if (hold_out_every == 0) return;
+  if (IsScan(recording))
+    entry.Fail(
+        "hold_out_every",
+        "needs markers or tracked points; the points of scans are not the same in all frames");
+  if (SplitRows(recording, recording.row_count, hold_out_every).held_out.empty())
+    entry.Fail("hold_out_every",
+               fmt::format("holds out none of the {} tracked points: there are too few, or grips "
+                           "follow those that it selects",
+                           recording.row_count));
 }
 
 void ReadValidation(const Config& config, ReconstructionStudy* study) {
@@ -137,6 +186,7 @@ void ReadValidation(const Config& config, ReconstructionStudy* study) {
   ValidationSettings& validation = study->validation;
   validation.hold_out_every = entry->Integer("hold_out_every", 0, 1000000, 0);
   if (validation.hold_out_every == 1) entry->Fail("hold_out_every", "would hold out every point");
+  RequireHeldOutPoints(*entry, study->recording, validation.hold_out_every);
   validation.true_surfaces = entry->Path("true_surfaces", "");
   if (!validation.true_surfaces.has_filename())  // a slash at the end
     validation.true_surfaces = validation.true_surfaces.parent_path();
@@ -145,7 +195,7 @@ void ReadValidation(const Config& config, ReconstructionStudy* study) {
   validation.true_forces = entry->Path("true_forces", "");
   if (validation.true_positions.empty() != validation.true_mesh.empty())
     entry->Fail("true_positions", "needs true_mesh, and the reverse");
-  CheckKnownAnswers(*entry, validation, study->frames);
+  CheckKnownAnswers(*entry, *study);
 }
 
 // Refuses to estimate a noise that the recording cannot show (point_noise.h). Only a fit of forces
@@ -237,6 +287,7 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
   NumberListedNodes(study.recording, study.mesh, regions);
   ReadValidation(config, &study);
   RequireNoise(config, study);
+  WarnOfIgnoredKeys(config, &study);
   config.RefuseUnknownKeys();
   if (study.frames.size() < 2 && study.recording.reference.source == ReferenceSource::kFirstFrame) {
     config.Fail("recording",

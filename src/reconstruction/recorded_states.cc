@@ -1,6 +1,7 @@
 #include "reconstruction/recorded_states.h"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <regex>
@@ -14,6 +15,13 @@ namespace {
 std::string KindOfNote(const std::string& note) {
   static const std::regex number("[-+]?[0-9.]+(e[-+]?[0-9]+)?");
   return std::regex_replace(note, number, "");
+}
+
+// Replaces the columns of `places` by those of `given` that are known.
+void ReplaceKnown(const Eigen::Matrix3Xd& given, Eigen::Matrix3Xd* places) {
+  CHECK_EQ(given.cols(), places->cols());
+  for (Eigen::Index j = 0; j < given.cols(); ++j)
+    if (given.col(j).allFinite()) places->col(j) = given.col(j);
 }
 
 // The notes of one kind.
@@ -57,6 +65,18 @@ bool FirstFrameIsReference(const ReconstructionStudy& study) {
 
 bool HasIdentifiedPoints(const ReconstructionStudy& study, const std::vector<FrameState>& states) {
   return study.follow.use_identity && states.front().tracked.cols() > 0;
+}
+
+PlacesAtRest FindPlacesAtRest(const ReconstructionStudy& study,
+                              const std::vector<FrameState>& states) {
+  PlacesAtRest places{states.front().tracked, states.front().held_out};
+  const Eigen::Matrix3Xd& given = study.recording.markers.places;
+  if (given.cols() == 0) return places;
+  const TrackedRows rows =
+      SplitRows(study.recording, given.cols(), study.validation.hold_out_every);
+  ReplaceKnown(given(Eigen::all, rows.used), &places.tracked);
+  ReplaceKnown(given(Eigen::all, rows.held_out), &places.held_out);
+  return places;
 }
 
 std::vector<std::string> WarningsOfStates(const ReconstructionStudy& study,

@@ -28,6 +28,16 @@ bool FirstFrameIsReference(const ReconstructionStudy& study);
 // needed to know where a point of the body is.
 bool HasIdentifiedPoints(const ReconstructionStudy& study, const std::vector<FrameState>& states);
 
+// Where tracked points are on the undeformed body, 3 × n, m; NaN where that is not known.
+struct PlacesAtRest {
+  Eigen::Matrix3Xd tracked;   // of FrameState::tracked
+  Eigen::Matrix3Xd held_out;  // of FrameState::held_out
+};
+// The `marker_places` of the recording. A point without such a place is taken to be where the first
+// state shows it, in which the body must be undeformed then.
+PlacesAtRest FindPlacesAtRest(const ReconstructionStudy& study,
+                              const std::vector<FrameState>& states);
+
 // The notes of the states as warnings that name the frame. Notes that differ in their numbers only
 // become one warning, which says how many other frames have such a note, and up to which; those
 // that the recording's own warnings contain are left out.

@@ -13,14 +13,14 @@ ResidualAtVertices::ResidualAtVertices(const ReconstructionStudy& study,
     : are_identified_(HasIdentifiedPoints(study, states)),
       vertices_(motion.body->boundary.node.size()) {
   if (!are_identified_) return;
-  const Eigen::Matrix3Xd& tracked = states.front().tracked;
-  std::vector<Eigen::Index> seen;
-  for (Eigen::Index j = 0; j < tracked.cols(); ++j)
-    if (tracked.col(j).allFinite()) seen.push_back(j);
-  if (seen.empty()) return;
+  const Eigen::Matrix3Xd places = FindPlacesAtRest(study, states).tracked;
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index j = 0; j < places.cols(); ++j)
+    if (places.col(j).allFinite()) known.push_back(j);
+  if (known.empty()) return;
   const PointHits near =
-      PointSearch(tracked(Eigen::all, seen)).Nearest(motion.body->boundary.surface.vertices);
-  for (const int point : near.index.row(0)) nearest_.push_back(seen[static_cast<size_t>(point)]);
+      PointSearch(places(Eigen::all, known)).Nearest(motion.body->boundary.surface.vertices);
+  for (const int point : near.index.row(0)) nearest_.push_back(known[static_cast<size_t>(point)]);
 }
 
 Eigen::Matrix3Xd ResidualAtVertices::Of(const FollowedFrame& frame) const {

@@ -49,8 +49,11 @@ MotionRecord ShownReconstruction(const ReconstructionStudy& study,
                           : "distance from the registered scan",
                       "m", Eigen::MatrixXd(vertices, count)};
   const ResidualAtVertices residuals(study, states, motion);
-  shown.fields = {{"displacement", "displacement", "m", Eigen::MatrixXd(vertices, count)},
-                  {"force", "fitted force at a node", "N", Eigen::MatrixXd(vertices, count)}};
+  shown.fields = {
+      {"displacement", "displacement", "m", Eigen::MatrixXd(vertices, count)},
+      {"force",
+       study.follow.forces.AreFitted() ? "fitted force at a node" : "recorded force at a node", "N",
+       Eigen::MatrixXd(vertices, count)}};
   for (Eigen::Index f = 0; f < count; ++f) {
     const size_t k = usable[static_cast<size_t>(chosen[static_cast<size_t>(f)])];
     const FollowedFrame& frame = motion.frames[k];

@@ -1,8 +1,8 @@
 // Whether the recordings of one fit agree about the parameters of the model, as plain data.
 //
 // Each recording has an estimate of its own, as if it had been fitted alone, but with the same
-// error of the mesh, the step, the shape and the markers' places as the others. The tests compare
-// these estimates with the covariance of their differences (analysis/agreement.h).
+// error of mesh, step, shape, places, grips' markers and adopted nuisances as the others. The tests
+// compare these estimates with the covariance of their differences (analysis/agreement.h).
 #ifndef LACUNA_RECORD_AGREEMENT_RECORD_H_
 #define LACUNA_RECORD_AGREEMENT_RECORD_H_
 

@@ -8,6 +8,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/json_number.h"
 #include "record/schema_version.h"
 
@@ -193,6 +194,14 @@ bool HasPlannableRecording(const CalibrationRecord& record) {
       [](const FittedRecording& recording) { return recording.fitted && !recording.scan; });
 }
 
+std::optional<double> RmsOfNoise(const CalibrationRecord& record) {
+  const bool has_scans =
+      std::any_of(record.recordings.begin(), record.recordings.end(),
+                  [](const FittedRecording& recording) { return recording.scan.has_value(); });
+  if (has_scans) return std::nullopt;
+  return RmsOfMarkerNoise(record.noise);
+}
+
 json EstimateToJson(const ParameterEstimate& estimate) {
   return {{"value", estimate.value},
           {"low_95", NumberOrNull(estimate.low)},
@@ -235,13 +244,10 @@ bool IsCalibrationOfAnotherFormat(const std::filesystem::path& file) {
 }
 
 CalibrationRecord ReadCalibrationFile(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  try {
-    const json value = json::parse(stream);
+  const auto read = [&](const json& value) {
     return NamingWhere(file.string(), [&] { return FromJson(value); });
-  } catch (const json::exception& problem) {
-    throw InputError(file.string() + ": is not a record of a calibration: " + problem.what());
-  }
+  };
+  return ReadJsonFile(file, read, "a record of a calibration");
 }
 
 }  // namespace lacuna

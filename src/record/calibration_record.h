@@ -113,6 +113,11 @@ struct CalibrationRecord {
 // such recordings, and not of scans.
 bool HasPlannableRecording(const CalibrationRecord& record);
 
+// The rms length of the noise of a marker's position, m (RmsOfMarkerNoise). Nothing if a recording
+// shows scans: the noise of their patches differs between recordings, so that no single number
+// holds for all errors.
+std::optional<double> RmsOfNoise(const CalibrationRecord& record);
+
 // The name in files and reports, e.g. "traded off".
 std::string VerdictName(ParameterEstimate::Verdict verdict);
 

@@ -7,7 +7,9 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "record/json_vector.h"
+#include "record/model_errors.h"
 #include "record/schema_version.h"
 
 namespace lacuna {
@@ -114,7 +116,8 @@ json TrendToJson(const ErrorTrend& trend) {
                     {"high", bin.high},
                     {"mean", bin.mean},
                     {"count", bin.count},
-                    {"rms_m", bin.rms}});
+                    {"rms_m", bin.rms},
+                    {"rms_over_sigma", NumberOrNull(bin.rms_over_sigma)}});
   return {{"quantity", trend.quantity},
           {"rank_correlation", NumberOrNull(trend.rank_correlation)},
           {"bins", bins}};
@@ -122,8 +125,8 @@ json TrendToJson(const ErrorTrend& trend) {
 ErrorTrend TrendFromJson(const json& object) {
   ErrorTrend trend{object.at("quantity"), NumberOr(object.at("rank_correlation")), {}};
   for (const json& bin : object.at("bins"))
-    trend.bins.push_back(
-        {bin.at("low"), bin.at("high"), bin.at("mean"), bin.at("count"), bin.at("rms_m")});
+    trend.bins.push_back({bin.at("low"), bin.at("high"), bin.at("mean"), bin.at("count"),
+                          bin.at("rms_m"), NumberOr(bin.value("rms_over_sigma", json()))});
   return trend;
 }
 
@@ -263,7 +266,7 @@ ComparisonRecord RecordFromJson(const json& document) {
 }  // namespace
 
 double ComparedRecording::RmsOfNoise(double sigma) const {
-  return (is_scan ? 1 : std::sqrt(3.0)) * sigma;
+  return is_scan ? sigma : RmsOfMarkerNoise(sigma);
 }
 
 void WriteComparisonFile(const ComparisonRecord& record, const std::vector<std::string>& text,
@@ -293,14 +296,10 @@ bool IsComparisonOf(const std::string& fit, const std::filesystem::path& file) {
 }
 
 ComparisonRecord ReadComparisonFile(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, "no such file; `lacuna compare` writes it");
-  try {
-    const json document = json::parse(stream);
+  const auto read = [&](const json& document) {
     return NamingWhere(file.string(), [&] { return RecordFromJson(document); });
-  } catch (const json::exception& problem) {
-    throw InputError({file.string()}, std::string("is not a comparison: ") + problem.what());
-  }
+  };
+  return ReadJsonFile(file, read, "a comparison");
 }
 
 }  // namespace lacuna

@@ -36,8 +36,9 @@ struct MeanDifference {
 struct ErrorSize {
   int points = 0;  // number of observed points, summed over the frames
   double rms = kNotMeasured;
-  double rms_over_sigma = kNotMeasured;  // rms over that of noise with the fit's σ
-  double rms_over_floor = kNotMeasured;  // the same with the recording's noise floor
+  // rms of the lengths, each over that which noise alone gives the point in that frame: with the
+  // fit's σ of the point, and with the recording's noise floor for a point with the σ `noise`.
+  double rms_over_sigma = kNotMeasured, rms_over_floor = kNotMeasured;
   // rms² = steady² + changing²: each point's mean error over the frames, and the deviation from it.
   double steady = kNotMeasured, changing = kNotMeasured;
   double largest = kNotMeasured;
@@ -80,9 +81,10 @@ struct WorstPeriod {
 
 // One bin of an ErrorTrend.
 struct ErrorBin {
-  double low = 0, high = 0, mean = 0;  // in the unit of the quantity
-  int count = 0;                       // number of frames, or of points for "grip_distance_m"
-  double rms = 0;                      // m
+  double low = 0, high = 0, mean = 0;    // in the unit of the quantity
+  int count = 0;                         // number of frames, or of points for "grip_distance_m"
+  double rms = 0;                        // m
+  double rms_over_sigma = kNotMeasured;  // NaN: written by an earlier version
 };
 
 // The rms error of a frame (or of a point, for "grip_distance_m") as a function of one quantity.
@@ -138,8 +140,8 @@ struct LoadedMost {
 
 struct ComparedRecording {
   std::string name;
-  bool is_scan = false;                  // its points are patches, measured along their normal
-  double noise = 0;                      // m, σ of a component of a point, as assumed in the fit
+  bool is_scan = false;  // its points are patches, measured along their normal
+  double noise = 0;      // m, σ of a component of a typical point, as assumed in the fit
   std::vector<std::string> point_names;  // numbers if the recording is not available
   Eigen::VectorXd grip_distance;         // m, undeformed object; empty: unknown
   NoiseFloor noise_floor;
@@ -159,8 +161,9 @@ struct ComparedRecording {
 // A comparison of the measurements of two recordings with the same frame rate.
 struct ComparedPair {
   std::string first, second;
-  int frames = 0;                  // frames of the first that the second covers
-  double delay = kNotMeasured;     // s, delay of the second with the smallest distance
+  int frames = 0;  // frames of the first that the second covers
+  // s, how much later the same motion is in the second, with the smallest distance.
+  double delay = kNotMeasured;
   double distance = kNotMeasured;  // m, rms, without each marker's mean difference
 };
 

@@ -82,4 +82,17 @@ CsvTable LoadCsv(const std::filesystem::path& file) {
   return table;
 }
 
+const Eigen::VectorXd* FindColumn(const CsvTable& table, const std::string& name) {
+  for (const CsvColumn& column : table)
+    if (column.name == name) return &column.values;
+  return nullptr;
+}
+
+const Eigen::VectorXd& ColumnOf(const CsvTable& table, const std::string& name,
+                                const std::filesystem::path& file) {
+  const Eigen::VectorXd* values = FindColumn(table, name);
+  if (values == nullptr) throw InputError({file.string()}, "has no column " + name);
+  return *values;
+}
+
 }  // namespace lacuna

@@ -25,6 +25,14 @@ void SaveCsv(const CsvTable& table, const std::filesystem::path& file);
 // fields than the header or if a field is not a number.
 CsvTable LoadCsv(const std::filesystem::path& file);
 
+// The values of the column with this name; nullptr if there is none.
+const Eigen::VectorXd* FindColumn(const CsvTable& table, const std::string& name);
+
+// The same for a column that must be there. Throws InputError, which names the table's `file`, if
+// there is none.
+const Eigen::VectorXd& ColumnOf(const CsvTable& table, const std::string& name,
+                                const std::filesystem::path& file);
+
 }  // namespace lacuna
 
 #endif  // LACUNA_RECORD_CSV_TABLE_H_

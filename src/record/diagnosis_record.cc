@@ -1,7 +1,6 @@
 #include "record/diagnosis_record.h"
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -256,13 +255,10 @@ void WriteDiagnosisFile(const DiagnosisRecord& record, const std::filesystem::pa
 }
 
 DiagnosisRecord ReadDiagnosisFile(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  try {
-    const json value = json::parse(stream);
+  const auto read = [&](const json& value) {
     return NamingWhere(file.string(), [&] { return FromJson(value); });
-  } catch (const json::exception& problem) {
-    throw InputError(file.string() + ": is not a diagnosis: " + problem.what());
-  }
+  };
+  return ReadJsonFile(file, read, "a diagnosis");
 }
 
 }  // namespace lacuna

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/json_file.h"
 
 namespace lacuna {
 
@@ -50,11 +49,8 @@ void SaveManifest(const Manifest& manifest, const std::filesystem::path& file) {
 }
 
 Manifest LoadManifest(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, "cannot be read: no such file, or no permission");
-  Manifest manifest;
-  try {
-    const json document = json::parse(stream);
+  const auto read = [&](const json& document) {
+    Manifest manifest;
     manifest.schema_version = document.at("schema_version");
     if (manifest.schema_version > kManifestSchemaVersion) {
       throw InputError({file.string()},
@@ -76,10 +72,9 @@ Manifest LoadManifest(const std::filesystem::path& file) {
       manifest.stages[name] = std::move(result);
     }
     manifest.finished = document.at("finished");
-  } catch (const json::exception& error) {
-    throw InputError({file.string()}, fmt::format("is not a valid manifest: {}", error.what()));
-  }
-  return manifest;
+    return manifest;
+  };
+  return ReadJsonFile(file, read, "a valid manifest");
 }
 
 }  // namespace lacuna

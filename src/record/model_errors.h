@@ -5,6 +5,7 @@
 #ifndef LACUNA_RECORD_MODEL_ERRORS_H_
 #define LACUNA_RECORD_MODEL_ERRORS_H_
 
+#include <cmath>
 #include <string>
 
 namespace lacuna {
@@ -36,6 +37,10 @@ struct ModelErrors {
   // its σ. Not in files.
   double unfitted_squares = 0;
 };
+
+// The rms length of the noise of a marker's position, √3 `sigma`, where `sigma` is the standard
+// deviation of each coordinate; in the unit of `sigma`.
+inline double RmsOfMarkerNoise(double sigma) { return std::sqrt(3.0) * sigma; }
 
 // An effect, or a nuisance, that a diagnosis could not try with these recordings or with one of
 // them.

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/json_file.h"
 #include "geometry/thinned_surface.h"
 #include "record/json_hash.h"
 #include "record/json_vector.h"
@@ -105,10 +105,7 @@ void WriteMotionFile(const MotionRecord& record, const std::filesystem::path& fi
 }
 
 StoredMotion ReadMotionFile(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, "cannot be read: no such file, or no permission");
-  try {
-    const json document = json::parse(stream);
+  const auto read = [&](const json& document) {
     return NamingWhere(file.string(), [&] {
       RequireSchemaVersion(document, kSchemaVersion, "lacuna compare");
       // Files of earlier versions have no hash.
@@ -122,9 +119,8 @@ StoredMotion ReadMotionFile(const std::filesystem::path& file) {
                           document.at("points"),
                           document.at("notes").get<std::vector<std::string>>()};
     });
-  } catch (const json::exception& problem) {
-    throw InputError({file.string()}, std::string("is not a motion: ") + problem.what());
-  }
+  };
+  return ReadJsonFile(file, read, "a motion");
 }
 
 }  // namespace lacuna

@@ -15,8 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kSchemaVersion = 2;
-// Recordings whose probabilities of a right name differ by less count as equally good.
+constexpr int kSchemaVersion = 3;
+// Probabilities of a right name are rounded to multiples of this before they are compared.
 constexpr double kNoticeable = 0.05;
 
 json PictureToJson(const ProtocolPicture& picture) {
@@ -66,12 +66,6 @@ double PlannedOutcome::LeastLambda() const {
   return least;
 }
 
-bool PlanRecord::IsSeparable() const {
-  return std::any_of(outcomes.begin(), outcomes.end(), [](const PlannedOutcome& outcome) {
-    return outcome.IsPlayable() && outcome.LeastLambda() >= kSeparableLambda;
-  });
-}
-
 void SortOutcomes(std::vector<PlannedOutcome>* outcomes) {
   const auto key = [](const PlannedOutcome& outcome) {
     return std::make_tuple(!outcome.IsPlayable(), -std::round(outcome.probability / kNoticeable),
@@ -103,7 +97,6 @@ void WritePlanFile(const PlanRecord& record, const std::filesystem::path& file) 
                     {"rivals", rivals},
                     {"also_left", record.also_left},
                     {"not_predicted", record.not_predicted},
-                    {"is_separable", record.IsSeparable()},
                     {"outcomes", outcomes}};
   WriteFileAtomically(file, all.dump(2) + "\n");
 }

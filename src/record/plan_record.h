@@ -74,11 +74,8 @@ struct PlanRecord {
   std::vector<PlannedRival> rivals;    // the most probable one first
   std::vector<std::string> also_left;  // nuisances that the diagnosis has not ruled out either
   std::vector<std::string>
-      not_predicted;                     // rivals whose influence on a planned recording is unknown
+      not_predicted;  // rivals whose influence on a planned recording is unknown, and pairs
   std::vector<PlannedOutcome> outcomes;  // the best first; those that cannot be played last
-
-  // Whether some planned recording raises λ of every pair to kSeparableLambda.
-  bool IsSeparable() const;
 };
 
 // Sorts by the probability of the right name, rounded to 5 % because a simulation does not know it

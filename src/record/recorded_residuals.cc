@@ -10,24 +10,14 @@
 #include "record/run_record.h"
 
 namespace lacuna {
-namespace {
-
-const Eigen::VectorXd& Column(const CsvTable& table, const std::string& name,
-                              const std::filesystem::path& file) {
-  for (const CsvColumn& column : table)
-    if (column.name == name) return column.values;
-  throw InputError({file.string()}, "has no column " + name);
-}
-
-}  // namespace
 
 RecordedResiduals ReadResiduals(const CsvTable& table, int recording,
                                 const std::filesystem::path& file) {
-  const Eigen::VectorXd& recordings = Column(table, "recording", file);
-  const Eigen::VectorXd& frame = Column(table, "frame", file);
-  const Eigen::VectorXd& time = Column(table, "time_s", file);
-  const Eigen::VectorXd& point = Column(table, "marker", file);
-  const Eigen::VectorXd& fitted = Column(table, "fitted", file);
+  const Eigen::VectorXd& recordings = ColumnOf(table, "recording", file);
+  const Eigen::VectorXd& frame = ColumnOf(table, "frame", file);
+  const Eigen::VectorXd& time = ColumnOf(table, "time_s", file);
+  const Eigen::VectorXd& point = ColumnOf(table, "marker", file);
+  const Eigen::VectorXd& fitted = ColumnOf(table, "fitted", file);
   RecordedResiduals result;
   std::map<int, Eigen::Index> column_of;
   int points = 0;
@@ -51,7 +41,7 @@ RecordedResiduals ReadResiduals(const CsvTable& table, int recording,
   result.difference = result.measured;
   for (int axis = 0; axis < 3; ++axis) {
     const auto coordinate = [&](const std::string& name) -> const Eigen::VectorXd& {
-      return Column(table, fmt::format("{}_{}_m", name, "xyz"[axis]), file);
+      return ColumnOf(table, fmt::format("{}_{}_m", name, "xyz"[axis]), file);
     };
     const Eigen::VectorXd &measured = coordinate("measured"),
                           &difference = coordinate("difference");
@@ -64,6 +54,17 @@ RecordedResiduals ReadResiduals(const CsvTable& table, int recording,
       result.difference(at, column) = difference[row];
     }
   }
+  const auto read_scalars = [&](const char* name, Eigen::MatrixXd* scalars) {
+    const Eigen::VectorXd* values = FindColumn(table, name);
+    if (values == nullptr) return;
+    *scalars = Eigen::MatrixXd::Constant(points, frames, kNotMeasured);
+    for (Eigen::Index row = 0; row < recordings.size(); ++row)
+      if (recordings[row] == recording)
+        (*scalars)(static_cast<Eigen::Index>(point[row]),
+                   column_of.at(static_cast<int>(frame[row]))) = (*values)[row];
+  };
+  read_scalars("along_normal_m", &result.along_normal);
+  read_scalars("sigma_m", &result.sigma);
   return result;
 }
 

@@ -18,13 +18,16 @@ struct RecordedResiduals {
   std::vector<char> fitted;    // n; 0: held out
   Eigen::MatrixXd measured;    // measured places; for a patch the mean of its scanned points
   Eigen::MatrixXd difference;  // predicted − measured; for a patch along its normal
+  // m × n, m; NaN where a point was not observed. Empty in a table of an earlier version.
+  Eigen::MatrixXd along_normal;  // the signed difference of a patch; NaN for markers
+  Eigen::MatrixXd sigma;  // noise of a point: σ of each coordinate, of a patch along its normal
 
   int PointCount() const { return static_cast<int>(measured.rows() / 3); }
 };
 
 // Reads the rows of recording number `recording`. Throws InputError naming `file` when a column is
-// absent, a point's number is negative or frames are not in chronological order. A recording
-// without rows has no frames.
+// absent, other than the last two, a point's number is negative or frames are not in chronological
+// order. A recording without rows has no frames.
 RecordedResiduals ReadResiduals(const CsvTable& table, int recording,
                                 const std::filesystem::path& file);
 

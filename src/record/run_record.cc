@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_file.h"
 #include "core/json_number.h"
 #include "core/npy.h"
 #include "record/csv_table.h"
@@ -87,6 +88,21 @@ FrameRecord ToFrame(const json& value) {
   return frame;
 }
 
+constexpr std::pair<RunForces, const char*> kForces[] = {
+    {RunForces::kNone, "none"}, {RunForces::kKnown, "known"}, {RunForces::kFitted, "fitted"}};
+
+const char* NameOfForces(RunForces forces) {
+  for (const auto& [value, name] : kForces)
+    if (value == forces) return name;
+  LOG(FATAL) << "forces without a name";
+}
+// Records of earlier versions do not name them.
+RunForces ForcesNamed(const std::string& name) {
+  for (const auto& [value, known] : kForces)
+    if (known == name) return value;
+  return RunForces::kFitted;
+}
+
 json FromMesh(const MeshRecord& mesh) {
   return {{"node_count", mesh.node_count},
           {"tet_count", mesh.tet_count},
@@ -133,11 +149,11 @@ CsvTable FrameTable(const std::vector<FrameRecord>& frames) {
 }  // namespace
 
 bool RunRecord::IsUsable() const {
-  return !frames.empty() && std::all_of(frames.begin(), frames.end(), [](const FrameRecord& frame) {
-    return frame.solver.usable;
-  }) && std::all_of(stages.begin(), stages.end(), [](const auto& stage) {
-    return stage.second.usable;
-  });
+  return !frames.empty() && frames_not_tried == 0 &&
+         std::all_of(frames.begin(), frames.end(),
+                     [](const FrameRecord& frame) { return frame.solver.usable; }) &&
+         std::all_of(stages.begin(), stages.end(),
+                     [](const auto& stage) { return stage.second.usable; });
 }
 
 void SaveRunRecord(const RunRecord& record, const std::filesystem::path& folder) {
@@ -151,7 +167,9 @@ void SaveRunRecord(const RunRecord& record, const std::filesystem::path& folder)
                 {"animation_residual_m", FromNumber(record.animation_residual)},
                 {"relative_animation_residual", FromNumber(record.relative_animation_residual)},
                 {"mesh", FromMesh(record.mesh)},
+                {"forces", NameOfForces(record.forces)},
                 {"frames", json::array()},
+                {"frames_not_tried", record.frames_not_tried},
                 {"stages", json::object()},
                 {"measures", json::object()},
                 {"warnings", record.warnings},
@@ -168,11 +186,8 @@ void SaveRunRecord(const RunRecord& record, const std::filesystem::path& folder)
 
 RunRecord LoadRunRecord(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kRecordName;
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, "cannot be read: no such file, or no permission");
-  RunRecord record;
-  try {
-    const json document = json::parse(stream);
+  const auto read = [&](const json& document) {
+    RunRecord record;
     const int version = document.at("schema_version");
     if (version != kSchemaVersion) {
       throw InputError({file.string()},
@@ -183,6 +198,8 @@ RunRecord LoadRunRecord(const std::filesystem::path& folder) {
     record.animation_residual = NumberOr(document.at("animation_residual_m"));
     record.relative_animation_residual = NumberOr(document.at("relative_animation_residual"));
     record.mesh = ToMesh(document.at("mesh"));
+    record.forces = ForcesNamed(document.value("forces", ""));
+    record.frames_not_tried = document.value("frames_not_tried", 0);
     for (const json& frame : document.at("frames")) record.frames.push_back(ToFrame(frame));
     for (const auto& [stage, status] : document.at("stages").items()) {
       record.stages[stage] = ToStatus(status);
@@ -194,9 +211,9 @@ RunRecord LoadRunRecord(const std::filesystem::path& folder) {
     if (document.at("has_point_residuals").get<bool>()) {
       record.point_residuals = ReadNpyMatrix(folder / kPointResidualsName);
     }
-  } catch (const json::exception& error) {
-    throw InputError({file.string()}, std::string("is not a valid record: ") + error.what());
-  }
+    return record;
+  };
+  const RunRecord record = ReadJsonFile(file, read, "a valid record");
   if (record.point_residuals.size() > 0 &&
       record.point_residuals.cols() != static_cast<Eigen::Index>(record.frames.size())) {
     throw InputError({(folder / kPointResidualsName).string()},

@@ -57,10 +57,15 @@ struct MeshRecord {
   double largest_radius_edge_ratio = kNotMeasured;
 };
 
+// The external forces under which the model followed the recording.
+enum class RunForces { kNone, kKnown, kFitted };
+
 struct RunRecord {
   std::string recording;              // the name of the recording
   double object_size = kNotMeasured;  // m, the length to which relative measures refer
-  std::vector<FrameRecord> frames;
+  RunForces forces = RunForces::kFitted;
+  std::vector<FrameRecord> frames;  // those that were tried; the last one need not be usable
+  int frames_not_tried = 0;         // that were to be followed after the last of `frames`
   double animation_residual = kNotMeasured;           // |D_anim| (Eq. 2): Σ |D|, m
   double relative_animation_residual = kNotMeasured;  // mean of the frames' relative residuals
   MeshRecord mesh;
@@ -71,7 +76,9 @@ struct RunRecord {
   // identify themselves, of each tracked point: points × frames, m; 0 × 0 if not measured.
   Eigen::MatrixXd point_residuals;
 
-  // Whether there are frames, and all frames and stages are usable.
+  // The number of frames that were to be followed.
+  int FrameCount() const { return static_cast<int>(frames.size()) + frames_not_tried; }
+  // Whether there are frames, all were tried, and all frames and stages are usable.
   bool IsUsable() const;
 };
 

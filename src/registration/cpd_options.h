@@ -1,21 +1,10 @@
-// The settings of non-rigid Coherent Point Drift and the progress it reports.
+// The settings of non-rigid Coherent Point Drift.
 #ifndef LACUNA_REGISTRATION_CPD_OPTIONS_H_
 #define LACUNA_REGISTRATION_CPD_OPTIONS_H_
-
-#include <functional>
 
 #include "registration/gaussian_sums.h"
 
 namespace lacuna {
-
-// The state after an iteration, for display while the registration runs.
-struct CpdProgress {
-  int iteration = 0;    // number of the iteration, from 1, over all levels
-  int points = 0;       // source points on the current level
-  int all_points = 0;   // source points on the last level
-  double sigma = 0.0;   // m: standard deviation σ of the Gaussians
-  double change = 0.0;  // rms displacement of this iteration, m
-};
 
 // The unit "size" below is the rms distance of the source points from their mean.
 struct CpdOptions {
@@ -69,8 +58,6 @@ struct CpdOptions {
   // times the spacing of the source. Raising it saves iterations.
   double tolerance = 0.0057;
   int max_iterations = 60;  // upper limit for each level, ≥ 1
-  // Called after each iteration if set.
-  std::function<void(const CpdProgress&)> progress;
   // The implementation of the inner loops; by default the fastest that this processor supports.
   const GaussianKernels* kernels = &BestKernels();
 };

@@ -21,8 +21,7 @@ double OutlierVolume(const Eigen::Matrix3Xd& target) {
   return extent.cwiseMax(kLeastThickness * std::max(extent.maxCoeff(), 1e-3)).prod();
 }
 
-// The curvature bias b / σ² of motion_step.h, measured with a σ that is small but covers some
-// neighbours.
+// The curvature bias b / σ² of motion_step.h, measured with the σ given.
 Eigen::VectorXd CurvatureBias(const Eigen::Matrix3Xf& points, const Eigen::Matrix3Xd& normals,
                               double sigma, const CpdOptions& options) {
   const BlockTree queries(points);
@@ -114,20 +113,35 @@ double PriorVariance(const Posterior& posterior, double sigma, double residual,
 SourceSurface SurfaceOf(const NormalisedClouds& clouds, const Level& level,
                         const GaussianBasis& basis, const CpdOptions& options,
                         const Eigen::Matrix3Xd& rest) {
+  // The bias is measured with this multiple of the lower limit of σ, which is small but covers some
+  // neighbours. Larger values average over more neighbours, and smooth sharp bends.
+  constexpr double kBiasSigma = 1.5;
   SourceSurface surface;
   surface.normals = EveryNth(clouds.source_normals, level.source_stride);
   surface.curvature_bias =
-      CurvatureBias(rest.cast<float>(), surface.normals, 1.5 * level.floor, options);
+      CurvatureBias(rest.cast<float>(), surface.normals, kBiasSigma * level.floor, options);
   surface.patches = MakePatches(basis, rest);
   return surface;
 }
 
-// `change`: rms displacement of the last step in normalised units.
-void ReportProgress(const NormalisedClouds& clouds, const CpdOptions& options, const Drift& drift,
-                    int points, double change) {
-  if (!options.progress) return;
-  options.progress({drift.iterations, points, static_cast<int>(clouds.source.cols()),
-                    clouds.scale * drift.sigma, clouds.scale * change});
+// Whether enough of the target is explained by the source, rather than as outliers, for a motion to
+// be estimated.
+bool HasOverlap(const Posterior& posterior, double target_count) {
+  // A rigid motion needs three points. Larger values give up on targets that show little of the
+  // source; smaller ones estimate a motion from points that belong to it by chance.
+  constexpr double kFewestPoints = 3.0, kLeastShare = 0.01;
+  return posterior.total_weight > std::max(kFewestPoints, kLeastShare * target_count);
+}
+
+// Whether the factor of a Hessian, computed with `factor_sigma` and used for `age` steps, must be
+// computed anew. The Hessian only affects the speed of convergence, so a factor is reused for a few
+// steps. This does not hold for a fine basis, where a single newly matched point can dominate the
+// curvature of a function.
+bool IsOutdated(double factor_sigma, int age, double sigma, bool is_fine) {
+  // Larger values save factorisations, and cost steps that converge more slowly.
+  constexpr int kOldest = 4;              // steps
+  constexpr double kLargestChange = 0.1;  // of σ, relative
+  return age == (is_fine ? 1 : kOldest) || std::abs(sigma - factor_sigma) > kLargestChange * sigma;
 }
 
 }  // namespace
@@ -142,8 +156,13 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
   const double volume = OutlierVolume(clouds.target);
   const double spacing =
       clouds.source_spacing * std::sqrt(static_cast<double>(level.source_stride));
+  // The next level continues from a coarse one, which need not be exact. Larger: fewer steps here,
+  // but more on the next level, where each costs more.
+  constexpr double kCoarseTolerance = 10.0;
   const double tolerance =
-      (level.is_last ? 1.0 : 10.0) * options.tolerance * options.sigma_floor * spacing;
+      (level.is_last ? 1.0 : kCoarseTolerance) * options.tolerance * options.sigma_floor * spacing;
+  // A level ends only where σ, too, has settled: where it falls by less than this factor per step.
+  constexpr double kSettledSigma = 0.97;
 
   const BasisTable table(basis, source, *options.kernels);
   const SourceSurface surface = SurfaceOf(clouds, level, basis, options, rest);
@@ -165,7 +184,7 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
     source.Move(rest_single + displacement);
     drift->posterior = ComputePosterior(
         source, {sigma, drift->outlier_weight, volume, options.cutoff}, *options.kernels, &target);
-    drift->has_overlap = drift->posterior.total_weight > std::max(3.0, 0.01 * target_count);
+    drift->has_overlap = HasOverlap(drift->posterior, target_count);
     if (!drift->has_overlap) return;
 
     const std::vector<Eigen::Matrix3d> gradients =
@@ -176,11 +195,7 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
                                                       options.tangential_weight);
     objective.coherence = prior * options.lambda;
     objective.rigidity = prior * options.rigidity;
-    // The Hessian only affects the speed of convergence, so a factor is reused for a few steps.
-    // This does not hold for a fine basis, where a single newly matched point can dominate the
-    // curvature of a function.
-    const int oldest_factor = basis.IsFine() ? 1 : 4;
-    if (factor_age == oldest_factor || std::abs(sigma - factor_sigma) > 0.1 * sigma) {
+    if (IsOutdated(factor_sigma, factor_age, sigma, basis.IsFine())) {
       factor_sigma = sigma;
       factor_age = 0;
       hessian = Factor(MotionHessian(surface, pull, rigidity_hessian, objective));
@@ -198,8 +213,7 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
       drift->outlier_weight = std::clamp(1.0 - drift->posterior.total_weight / target_count,
                                          CpdOptions::kFewestOutliers, CpdOptions::kMostOutliers);
     }
-    ReportProgress(clouds, options, *drift, static_cast<int>(rest.cols()), change);
-    drift->converged = drift->sigma > 0.97 * sigma && change < tolerance;
+    drift->converged = drift->sigma > kSettledSigma * sigma && change < tolerance;
   }
   drift->coefficients.leftCols(rank) = coefficients;
   if (!level.is_last) return;

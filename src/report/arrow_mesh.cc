@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace lacuna {
 namespace {
@@ -18,7 +19,7 @@ void PlaceRing(const Eigen::Vector3d& centre, const Eigen::Vector3d& direction, 
   const Eigen::Vector3d u = direction.unitOrthogonal();
   const Eigen::Vector3d v = direction.cross(u);
   for (int k = 0; k < kSides; ++k) {
-    const double angle = 2 * M_PI * k / kSides;
+    const double angle = 2 * std::numbers::pi * k / kSides;
     vertices->col(first + k) = centre + radius * (std::cos(angle) * u + std::sin(angle) * v);
   }
 }

@@ -37,8 +37,8 @@ void AppendParameter(const FittedParameter& parameter, TableText* table) {
         fmt::format(" with {} (correlation {:.2f})", estimate.traded_with, estimate.correlation);
   const double at_limit = parameter.at_limit.value_or(estimate.value);
   if (std::abs(DeviationsTo(at_limit, estimate, parameter.log_scale)) > kMoved) {
-    note +=
-        fmt::format("{}{:.4g} with finer elements and steps", note.empty() ? "" : "; ", at_limit);
+    note += fmt::format("{}{:.4g} with {}", note.empty() ? "" : "; ", at_limit,
+                        parameter.with_finest_mesh ? "finer elements and steps" : "shorter steps");
     table->moved = true;
   }
   if (const auto& near = parameter.near_bound;
@@ -52,11 +52,18 @@ void AppendParameter(const FittedParameter& parameter, TableText* table) {
 std::string ParameterTable(const CalibrationRecord& record) {
   TableText table{TableHeader()};
   for (const FittedParameter& parameter : record.parameters) AppendParameter(parameter, &table);
+  const bool has_mesh_limit = std::any_of(
+      record.parameters.begin(), record.parameters.end(),
+      [](const FittedParameter& parameter) { return parameter.with_finest_mesh.has_value(); });
   if (table.moved)
     table.text +=
-        "  The intervals are those of the values with infinitely fine elements and time steps, to "
-        "which a smaller\n  mesh.max_volume and motion.time_step bring the values of the model "
-        "closer.\n";
+        has_mesh_limit
+            ? "  The intervals are those of the values with infinitely fine elements and time "
+              "steps, to which a smaller\n  mesh.max_volume and motion.time_step bring the values "
+              "of the model closer.\n"
+            : "  The intervals are those of the values with infinitely short time steps, to which "
+              "a "
+              "smaller\n  motion.time_step brings the values of the model closer.\n";
   return table.text;
 }
 
@@ -125,7 +132,7 @@ std::string TimeStepText(const CalibrationRecord& record) {
   if (std::none_of(record.recordings.begin(), record.recordings.end(), moves)) return "";
   return fmt::format(
       "  time step {}{}\n", DurationText(record.time_step),
-      record.step_error > 0
+      record.step_error > 0 && std::isfinite(record.step_error)
           ? fmt::format("; halving it would change the prediction by {:.2g} σ", record.step_error)
           : "");
 }

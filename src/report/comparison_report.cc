@@ -22,19 +22,34 @@ constexpr double kFarFromFloor = 2;        // ratio of the assumed noise to the 
 // The object drifts while it rests where the slope is this many times that which noise alone gives:
 // below, a few frames at rest would show a drift; above, slow drift of long rests goes unmentioned.
 constexpr double kClearDrift = 3;
+// The points have different noise where the rms error in units of each point's own noise differs
+// by this much, relatively, from the rms error over the noise of a typical point.
+constexpr double kOtherNoise = 0.02;
 // An error at the measured places is reported where it is so many times that at the fitted places.
 constexpr double kHiddenByPlaces = 1.1;
 
 bool IsWhite(double p_value) { return p_value >= kSignificant; }
 
-std::string SizeText(const ComparedRecording& recording, const ErrorSize& error) {
+// The multiple of the noise that the fit assumed.
+std::string MultipleText(const ComparedRecording& recording, const ErrorSize& error) {
   const double noise_rms = recording.RmsOfNoise(recording.noise);
-  std::string text = fmt::format(
-      "the rms error is {}, {:.1f} times the {} that noise alone would give (σ = {} {}, as assumed "
-      "in the fit)",
-      Millimetres(error.rms), error.rms_over_sigma, Millimetres(noise_rms),
-      Millimetres(recording.noise),
-      recording.is_scan ? "for a patch along its normal" : "per coordinate");
+  const char* component = recording.is_scan ? "for a patch along its normal" : "per coordinate";
+  const bool have_equal_noise =
+      std::abs(error.rms_over_sigma * noise_rms - error.rms) <= kOtherNoise * error.rms;
+  if (have_equal_noise)
+    return fmt::format(
+        "{:.1f} times the {} that noise alone would give (σ = {} {}, as assumed in the fit)",
+        error.rms_over_sigma, Millimetres(noise_rms), Millimetres(recording.noise), component);
+  const char* point = recording.is_scan ? "patch" : "marker";
+  return fmt::format(
+      "{:.1f} times what noise alone would give, where each {} counts in units of its own σ ({} "
+      "{} for a typical {}, as assumed in the fit)",
+      error.rms_over_sigma, point, Millimetres(recording.noise), component, point);
+}
+
+std::string SizeText(const ComparedRecording& recording, const ErrorSize& error) {
+  std::string text = fmt::format("the rms error is {}, {}", Millimetres(error.rms),
+                                 MultipleText(recording, error));
   if (!std::isnan(error.rms_over_floor))
     text += fmt::format(" and {:.1f} times the noise that the recording itself shows ({})",
                         error.rms_over_floor,
@@ -167,10 +182,10 @@ std::string DescribeLoadedMost(const LoadedMost& loaded, const std::string& reco
 std::string DescribePair(const ComparedPair& pair) {
   return fmt::format(
       "{} and {}, as measured, differ by {} rms over {} frames if {} is shifted {:.4f} s {}. If "
-      "both "
-      "repeat the same experiment, no model can have an error below {} rms in both.",
+      "both repeat the same experiment, a right model is expected to have an rms error of about {} "
+      "in each.",
       pair.first, pair.second, Millimetres(pair.distance), pair.frames, pair.second,
-      std::abs(pair.delay), pair.delay < 0 ? "earlier" : "later",
+      std::abs(pair.delay), pair.delay > 0 ? "earlier" : "later",
       Millimetres(pair.distance / std::sqrt(2.0)));
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -243,7 +244,7 @@ std::string AgreementLines(const AgreementRecord& agreement) {
 std::string DetectableTable(const DiagnosisRecord& diagnosis) {
   std::string text = "\n  Smallest size that these recordings would reveal\n";
   for (const RecordedEffect& effect : diagnosis.ranking) {
-    double least = INFINITY, most = 0;
+    double least = std::numeric_limits<double>::infinity(), most = 0;
     for (const RecordedSize& size : effect.sizes) {
       least = std::min(least, size.detectable);
       most = std::max(most, size.detectable);

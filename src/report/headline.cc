@@ -10,11 +10,11 @@
 #include <utility>
 #include <variant>
 
-#include "core/quantity.h"
 #include "record/effect_card.h"
 #include "record/ledger.h"
 #include "report/agreement_text.h"
 #include "report/calibration_report.h"
+#include "report/missed_reaction.h"
 #include "report/quantity_text.h"
 #include "report/verdict_text.h"
 
@@ -26,12 +26,14 @@ constexpr double kLikely = 0.5;
 // A fall of the error that is not rounded to 0 %.
 constexpr double kSmallestFall = 0.005;
 
-std::string Lengths(const ModelErrors& errors) {
+// "0.870 mm, 5.1 times the noise".
+std::string ErrorInWords(const ModelErrors& errors) {
   return fmt::format("{}, {:.1f} times the noise", Millimetres(errors.held_out_rms),
                      errors.rms_over_sigma);
 }
 
-std::string Observed(const CalibrationRecord& record) {
+// What the recordings show: "markers", "scans" or both.
+std::string ObservedKinds(const CalibrationRecord& record) {
   bool markers = false, scans = false;
   for (const FittedRecording& recording : record.recordings)
     (recording.scan ? scans : markers) = true;
@@ -55,7 +57,7 @@ WorstPart FindWorst(const ComparisonRecord& comparison, bool held_out) {
 }
 
 // "recording 1", or "recording fast" of one that is called "fast".
-std::string Recording(const ComparedRecording& recording) {
+std::string RecordingLabel(const ComparedRecording& recording) {
   return (recording.name.starts_with("recording") ? "" : "recording ") + recording.name;
 }
 
@@ -71,75 +73,16 @@ std::string WhereAndWhen(const ReportedModel& model) {
                                                               : std::to_string(point));
   if (const auto& period = worst.part->worst_period)
     text += fmt::format(" and from {:.3g} s to {:.3g} s", period->from, period->to);
-  if (model.comparison->recordings.size() > 1) text += " of " + Recording(*worst.recording);
+  if (model.comparison->recordings.size() > 1) text += " of " + RecordingLabel(*worst.recording);
   return text;
 }
 
 std::string FirstErrorSentence(const ReportedModel& model) {
   const bool misses = model.errors.rms_over_sigma >= kBeyondNoise;
   return fmt::format("The model {} the {} {} {} in frames that it was {}fitted to{}.",
-                     misses ? "misses" : "meets", Observed(model.calibration),
-                     misses ? "by" : "to within", Lengths(model.errors) + ",",
+                     misses ? "misses" : "meets", ObservedKinds(model.calibration),
+                     misses ? "by" : "to within", ErrorInWords(model.errors) + ",",
                      model.errors.has_held_out ? "not " : "", WhereAndWhen(model));
-}
-
-// The measured force or torque that is missed by the largest multiple of its noise.
-struct WorstReaction {
-  const FittedReaction* reaction = nullptr;
-  const FittedRecording* recording = nullptr;
-  const ReactionMeasure* error = nullptr;
-};
-WorstReaction FindWorstReaction(const CalibrationRecord& record) {
-  WorstReaction worst;
-  for (const FittedRecording& recording : record.recordings)
-    for (const FittedReaction& reaction : recording.reactions)
-      for (const ReactionMeasure* error : {&reaction.in_fit, &reaction.held_out})
-        if (error->values > 0 &&
-            (worst.error == nullptr || error->rms_over_sigma > worst.error->rms_over_sigma))
-          worst = {&reaction, &recording, error};
-  return worst;
-}
-
-// What a mistake in a reading may be, as the second half of a sentence.
-std::string DescribeMistakes(const FittedReaction& reaction) {
-  const ReadingMistakes& mistakes = reaction.likely_mistakes;
-  std::vector<std::string> likely;
-  if (mistakes.factor && *mistakes.factor < 0)
-    likely.emplace_back("with the opposite sign (`exerted_by`)");
-  if (mistakes.factor && *mistakes.factor > 0)
-    likely.push_back(fmt::format("if it were {:.3g} times the {}, as in another unit",
-                                 *mistakes.factor, reaction.Quantity()));
-  if (mistakes.offset)
-    likely.push_back(fmt::format("with an offset of {:.3g} {} (`tare_deviation`)", *mistakes.offset,
-                                 reaction.Unit()));
-  if (mistakes.delay)
-    likely.push_back(fmt::format("if it came {} {} (`delay_deviation`)",
-                                 DurationText(std::abs(*mistakes.delay)),
-                                 *mistakes.delay > 0 ? "late" : "early"));
-  if (!likely.empty()) return fmt::format("its reading would fit {}.", fmt::join(likely, ", or "));
-  return fmt::format(
-      "another sign (`exerted_by`), {}a delay (`delay_deviation`) or another unit of its reading "
-      "would look like this.",
-      reaction.tare_deviation == 0 ? "an offset (`tare_deviation`), " : "");
-}
-
-// Where a measured force is missed by far more than the markers or scans are. Empty where none is.
-std::string MissedReactionSentence(const ReportedModel& model) {
-  // An error over the noise that is this many times that of the markers is worth a sentence.
-  constexpr double kFarMore = 3;
-  const auto [reaction, recording, error] = FindWorstReaction(model.calibration);
-  if (error == nullptr ||
-      error->rms_over_sigma < kFarMore * std::max(1.0, model.errors.rms_over_sigma))
-    return "";
-  std::string text = fmt::format(
-      "{} it misses the {} on {}{} by {:.3g} {}, {:.1f} times its noise.",
-      model.errors.rms_over_sigma < kBeyondNoise ? "But" : "And", reaction->Quantity(),
-      reaction->name,
-      model.calibration.recordings.size() > 1 ? fmt::format(" ({})", recording->name) : "",
-      error->rms, reaction->Unit(), error->rms_over_sigma);
-  if (error->rms < kConsiderableReactionError * reaction->largest_reading) return text;
-  return text + " Before an effect is looked for, the load cell should be checked: " +
-         DescribeMistakes(*reaction);
 }
 
 // The number of standard deviations of its prior by which an estimate is off; 0 where a conflict
@@ -365,7 +308,8 @@ std::string AfterAdding(const ReportedModel& model, const ReportedModel& before)
                        model.calibration.message);
   const double fall = 1 - model.errors.held_out_rms / before.errors.held_out_rms;
   if (!(fall >= kSmallestFall)) {
-    const std::string stays = fmt::format("With {}, the error is {}", title, Lengths(model.errors));
+    const std::string stays =
+        fmt::format("With {}, the error is {}", title, ErrorInWords(model.errors));
     const double at_measured_places = model.errors.held_out_at_measured_places;
     const double before_there = before.errors.held_out_at_measured_places;
     if (!(1 - at_measured_places / before_there >= kSmallestFall)) return stays + ".";
@@ -377,11 +321,11 @@ std::string AfterAdding(const ReportedModel& model, const ReportedModel& before)
                1e3 * before_there, 1e3 * at_measured_places, title);
   }
   return fmt::format("With {}, the error falls by {:.0f} % to {}.", title, 100 * fall,
-                     Lengths(model.errors));
+                     ErrorInWords(model.errors));
 }
 
 // Whether a diagnosis names this effect, and no other, as what is missing.
-bool Names(const DiagnosisRecord& diagnosis, const std::string& effect) {
+bool NamesOnly(const DiagnosisRecord& diagnosis, const std::string& effect) {
   return diagnosis.verdict == Verdict::kMissing &&
          diagnosis.effects == std::vector<std::string>{effect};
 }
@@ -419,7 +363,7 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
       if (models[k].calibration.usable) sentences.push_back(VerdictSentence(models[k]));
       continue;
     }
-    if (Names(diagnosis, added)) {
+    if (NamesOnly(diagnosis, added)) {
       sentences.push_back(fmt::format(
           "{} diagnosis names {}, but once it is fitted, its size may be zero, so that it does not "
           "count.",
@@ -438,30 +382,6 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
   if (last != models.rend() && last->diagnosis->agreement.Disagree())
     sentences.push_back(ExplainAgreement(last->diagnosis->agreement));
   return sentences;
-}
-
-std::vector<std::string> ReconstructionHeadline(const RunRecord& record) {
-  const auto followed = std::count_if(record.frames.begin(), record.frames.end(),
-                                      [](const FrameRecord& frame) { return frame.solver.usable; });
-  const auto how = [&]() -> std::string {
-    if (followed == 0)
-      return fmt::format("The model could not follow any of {} frames.", record.frames.size());
-    const std::string follows = fmt::format(
-        "With fitted forces the model follows {} of {} frames; ", followed, record.frames.size());
-    if (std::isnan(record.relative_animation_residual))
-      return follows + "how far its points are from their measured places is not known.";
-    return follows +
-           fmt::format(
-               "its points are {} from their measured places on average{}, {:.2g} % of the "
-               "object's size.",
-               Millimetres(record.relative_animation_residual * record.object_size),
-               std::isnan(record.animation_residual) ? " over the frames in which this was measured"
-                                                     : "",
-               100 * record.relative_animation_residual);
-  };
-  return {how(),
-          "Forces that are fitted frame by frame let a wrong model follow too, so that this says "
-          "nothing about which physics the model lacks."};
 }
 
 }  // namespace lacuna

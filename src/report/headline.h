@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "record/run_record.h"
 #include "report/reported_run.h"
 
 namespace lacuna {
@@ -15,11 +14,8 @@ namespace lacuna {
 // (if nothing was held out, on the fitted ones), and the verdict of its diagnosis with what to do
 // next. Where the first model was compared, the first sentence says where and when the error is
 // largest. The verdict of the last model comes after a measured force that it misses by far more
-// than the markers, and a conflict with a prior of more than ten standard deviations.
+// than the markers or scans, and a conflict with a prior of more than ten standard deviations.
 std::vector<std::string> Headline(const std::vector<ReportedModel>& models);
-
-// How closely a reconstruction follows its recording.
-std::vector<std::string> ReconstructionHeadline(const RunRecord& record);
 
 }  // namespace lacuna
 

@@ -7,9 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "report/offscreen_window.h"
 #include "report/page_drawing.h"
+#include "report/verdict_text.h"
 
 namespace lacuna {
 namespace {
@@ -84,6 +87,23 @@ void DrawNoise(const LedgerPicture& picture, const BarArea& area, vtkRenderer* p
 }
 
 }  // namespace
+
+LedgerPicture PictureOf(const Ledger& ledger) {
+  CHECK(!ledger.models.empty());
+  const LedgerModel& first = ledger.models.front();
+  LedgerPicture picture;
+  picture.title = fmt::format("{}: rms error in the {} frames", first.name,
+                              first.errors.has_held_out ? "held-out" : "fitted");
+  for (size_t k = 0; k < ledger.models.size(); ++k) {
+    const LedgerModel& model = ledger.models[k];
+    if (!model.record.usable) continue;
+    const std::string label = ModelLabel(
+        k, model.added, model.parent < 0 ? std::nullopt : ledger.models[model.parent].diagnosis);
+    picture.models.push_back({label, model.errors.held_out_rms});
+  }
+  picture.noise = RmsOfNoise(first.record).value_or(0);
+  return picture;
+}
 
 PictureResult RenderLedgerPng(const std::filesystem::path& file, const LedgerPicture& picture) {
   CHECK(!picture.models.empty()) << "there is no model to draw";

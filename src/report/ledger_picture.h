@@ -10,12 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "record/ledger.h"
 #include "report/panel_picture.h"
 
 namespace lacuna {
 
 struct LedgerBar {
-  std::string label;  // "with viscoelastic_branch"
+  std::string label;  // ModelLabel: "with viscoelastic branch"
   double error = 0;   // m, rms
 };
 
@@ -25,6 +26,10 @@ struct LedgerPicture {
   double noise = 0;                                  // m, rms; 0: draw no line
   std::string noise_label = "noise of the markers";  // beside the line
 };
+
+// The held-out error of every model that could be fitted, or the error of the fitted frames where
+// nothing was held out. At least one model is needed (CHECK).
+LedgerPicture PictureOf(const Ledger& ledger);
 
 // Writes a PNG that is 1800 pixels wide, with letters that are still readable at half that width;
 // its height follows from the number of models. Returns kNoRenderer where OpenGL is not available

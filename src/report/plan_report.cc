@@ -125,6 +125,11 @@ std::string Sizes(const PlannedOutcome& best) {
 std::string PlanSummary(const PlanRecord& plan) {
   std::string text = Wrapped(Question(plan), "", "") + Wrapped(Advice(plan), "", "");
   if (plan.outcomes.empty() || !plan.outcomes.front().IsPlayable()) return text + WhyNot(plan);
+  text += Wrapped(
+      "The two shares of right names are not comparable: the first is of recordings like those "
+      "that are there, decided among all effects and nuisances; the second starts from what the "
+      "recordings have shown and is decided between these effects only.",
+      "", "");
   const auto failed = std::count_if(plan.outcomes.begin(), plan.outcomes.end(),
                                     [](const auto& outcome) { return !outcome.IsPlayable(); });
   if (failed > 0)
@@ -135,19 +140,19 @@ std::string PlanSummary(const PlanRecord& plan) {
 }
 
 std::string PlanReport(const PlanRecord& plan) {
+  // Without a recording that can be made, the summary says everything.
+  if (plan.outcomes.empty() || !plan.outcomes.front().IsPlayable()) return PlanSummary(plan);
   std::string text = PlanSummary(plan) + "\n" + Table(plan);
   text += "\n" + Wrapped(
                      "λ is the squared distance between the predictions of two rivals in units of "
                      "the noise, for the pair that is hardest to tell apart; λ = 12 tells two "
                      "effects apart in four cases of five.",
                      "", "");
-  if (!plan.outcomes.empty() && plan.outcomes.front().IsPlayable() &&
-      !plan.outcomes.front().sizes.empty())
+  if (!plan.outcomes.front().sizes.empty())
     text +=
         "\nExpected 95 % intervals with the best recording, if the effect is the missing one:\n" +
         Sizes(plan.outcomes.front());
-  const bool are_said = plan.outcomes.empty() || !plan.outcomes.front().IsPlayable();
-  return are_said ? text : text + WhyNot(plan);
+  return text + WhyNot(plan);
 }
 
 }  // namespace lacuna

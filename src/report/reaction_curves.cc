@@ -28,20 +28,13 @@ constexpr double kLeastMotion = 1e-9;  // m or rad; smaller ones are rounding er
 
 CsvTable LoadIfThere(const fs::path& file) { return fs::exists(file) ? LoadCsv(file) : CsvTable(); }
 
-const Eigen::VectorXd& ColumnNamed(const CsvTable& table, const std::string& name,
-                                   const fs::path& file) {
-  for (const CsvColumn& column : table)
-    if (column.name == name) return column.values;
-  throw InputError({file.string()}, "has no column " + name);
-}
-
 // The rows of each component of each reading of recording `r` in which there is a value.
 std::map<std::pair<int, int>, std::vector<int>> RowsOfComponents(const CsvTable& table, size_t r,
                                                                  const Eigen::VectorXd& measured,
                                                                  const fs::path& file) {
-  const Eigen::VectorXd& recording = ColumnNamed(table, "recording", file);
-  const Eigen::VectorXd& reading = ColumnNamed(table, "reaction", file);
-  const Eigen::VectorXd& component = ColumnNamed(table, "component", file);
+  const Eigen::VectorXd& recording = ColumnOf(table, "recording", file);
+  const Eigen::VectorXd& reading = ColumnOf(table, "reaction", file);
+  const Eigen::VectorXd& component = ColumnOf(table, "component", file);
   std::map<std::pair<int, int>, std::vector<int>> rows;
   for (Eigen::Index row = 0; row < recording.size(); ++row)
     if (recording[row] == static_cast<double>(r) && !std::isnan(measured[row]))
@@ -56,7 +49,7 @@ void AppendCurves(const CsvTable& table, const fs::path& file, bool is_torque, s
                   const FittedRecording& recording, json* curves) {
   if (table.empty()) return;
   const auto column = [&](const char* name) -> const Eigen::VectorXd& {
-    return ColumnNamed(table, name, file);
+    return ColumnOf(table, name, file);
   };
   const Eigen::VectorXd& measured = column(is_torque ? "measured_N_m" : "measured_N");
   const Eigen::VectorXd& difference = column(is_torque ? "difference_N_m" : "difference_N");

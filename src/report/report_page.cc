@@ -5,6 +5,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "report/report_document.h"
+#include "report/reported_run.h"
 
 // The template, which report_template.S includes byte for byte.
 extern "C" const char lacuna_report_template_begin[];
@@ -39,10 +40,6 @@ std::string WithoutAngles(const std::string& text) {
   return safe;
 }
 
-std::string NameOf(const fs::path& folder) {
-  return fs::absolute(folder / ".").lexically_normal().parent_path().filename().string();
-}
-
 }  // namespace
 
 std::string_view ReportTemplate() {
@@ -71,7 +68,7 @@ ReportFiles FilesOf(const fs::path& page) {
 ReportFiles DefaultReportFiles(const std::vector<fs::path>& runs) {
   if (runs.size() == 1) return FilesOf(runs.front() / "report.html");
   std::string name;
-  for (const fs::path& run : runs) name += (name.empty() ? "" : "_vs_") + NameOf(run);
+  for (const fs::path& run : runs) name += (name.empty() ? "" : "_vs_") + RunName(run);
   if (name.size() > kLongestName)
     throw InputError("the names of the runs are too long for a file name; give --output FILE");
   const fs::path beside = (runs.front() / "..").lexically_normal();

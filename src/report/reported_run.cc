@@ -18,10 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-std::string NameOf(const fs::path& folder) {
-  return fs::absolute(folder / ".").lexically_normal().parent_path().filename().string();
-}
-
 fs::path CalibrationFile(const fs::path& folder) {
   return FinishedStage(folder, "calibration") / "calibration.json";
 }
@@ -34,7 +30,7 @@ ReportedModel OpenModel(const fs::path& folder, const std::string& added,
                         std::vector<std::string>* notes) {
   ReportedModel model;
   model.folder = folder;
-  model.name = NameOf(folder);
+  model.name = RunName(folder);
   model.added = added;
   const fs::path fit = CalibrationFile(folder);
   model.fit = HashFile(fit);
@@ -138,6 +134,10 @@ bool IsAddedTo(const fs::path& before, const std::string& effect, const fs::path
 }
 
 }  // namespace
+
+std::string RunName(const fs::path& folder) {
+  return fs::absolute(folder / ".").lexically_normal().parent_path().filename().string();
+}
 
 bool IsFittedRun(const fs::path& folder) {
   if (!fs::exists(folder / "manifest.json")) return false;

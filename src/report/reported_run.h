@@ -48,6 +48,10 @@ struct ReportedRun {
 // when one of its files is damaged.
 ReportedRun OpenReportedRun(const std::filesystem::path& folder);
 
+// The name of a run: the last part of the path of its folder, which need not exist. "." has the
+// name of the working directory, and a slash at the end changes nothing.
+std::string RunName(const std::filesystem::path& folder);
+
 // Whether the folder holds a finished run of `lacuna fit`.
 bool IsFittedRun(const std::filesystem::path& folder);
 

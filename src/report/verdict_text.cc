@@ -223,6 +223,12 @@ std::string ShortTitle(const DiagnosisRecord& diagnosis, const std::string& name
   return title;
 }
 
+std::string ModelLabel(size_t index, const std::string& added,
+                       const std::optional<DiagnosisRecord>& before) {
+  if (index == 0) return "initial model";
+  return (index == 1 ? "with " : "and with ") + (before ? ShortTitle(*before, added) : added);
+}
+
 std::vector<std::string> TestedBeside(const DiagnosisRecord& diagnosis, const std::string& effect) {
   std::vector<std::string> beside = diagnosis.decision.adequacy.beside;
   return std::erase(beside, effect) > 0 ? beside : std::vector<std::string>{};

@@ -2,6 +2,8 @@
 #ifndef LACUNA_REPORT_VERDICT_TEXT_H_
 #define LACUNA_REPORT_VERDICT_TEXT_H_
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,13 @@ std::string TitleOf(const DiagnosisRecord& diagnosis, const std::string& name);
 // The title within a sentence, without what it has in brackets: "Viscoelastic branch (Maxwell
 // element of a Prony series)" as "viscoelastic branch".
 std::string ShortTitle(const DiagnosisRecord& diagnosis, const std::string& name);
+
+// What the model at `index` of a sequence is called beside the others: "initial model", "with
+// viscoelastic branch" for the first added effect, "and with drag" for a later one. `before`: the
+// diagnosis of the model to which the effect was added; without it the label has the effect's name
+// instead of its title.
+std::string ModelLabel(size_t index, const std::string& added,
+                       const std::optional<DiagnosisRecord>& before);
 
 // What the test of adequacy has taken beside this effect: names of nuisances and of a second
 // effect. Empty where it has examined a hypothesis without the effect.

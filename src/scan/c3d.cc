@@ -15,8 +15,8 @@
 
 #include "core/error.h"
 #include "core/text_file.h"
-#include "scan/delimited_table.h"
 #include "scan/marker_files.h"
+#include "scan/table_text.h"
 
 namespace lacuna {
 namespace {
@@ -267,7 +267,7 @@ std::vector<std::string> ReadNames(const Bytes& bytes,
 
 }  // namespace
 
-MarkerTracks ReadC3d(const std::filesystem::path& file, FileTimes times) {
+MarkerTracks ReadC3d(const std::filesystem::path& file, FileTimes use) {
   Bytes bytes(file, ReadFilledFile(file));
   if (bytes.Size() < kBlock || bytes.Byte(1) != kKey || bytes.Byte(0) < 2) {
     bytes.Fail("is not a C3D file");
@@ -309,9 +309,9 @@ MarkerTracks ReadC3d(const std::filesystem::path& file, FileTimes times) {
     const std::vector<std::string> texts = Texts(bytes, units->second, 1);
     if (!texts.empty()) tracks.length_unit = texts[0];
   }
-  if (format.rate == 0 && times == FileTimes::kUsed)
+  if (format.rate == 0 && use == FileTimes::kUsed)
     bytes.Fail("has no frame rate; give `rate: … Hz` under `frames` in recording.yaml");
-  if (format.other_rate > 0 && times == FileTimes::kUsed)
+  if (format.other_rate > 0 && use == FileTimes::kUsed)
     tracks.warnings.push_back(fmt::format(
         "{}: its header states {:g} Hz and POINT:RATE {:g} Hz; the former is used, which "
         "`rate` in recording.yaml replaces",

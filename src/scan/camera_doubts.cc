@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "geometry/tri_mesh.h"
 
 namespace lacuna {
 namespace {
 
-double Degrees(double radians) { return radians * 180 / M_PI; }
+double Degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 // "; they suit images of twice this width and height" where both coordinates of the principal
 // point say so; empty otherwise.
@@ -58,29 +59,31 @@ int LonelyView(const std::vector<Eigen::Matrix3Xd>& views) {
 
 }  // namespace
 
-std::string DoubtOfIntrinsics(const Intrinsics& k, int width, int height) {
-  const bool is_outside = k.cx < -0.5 || k.cy < -0.5 || k.cx > width - 0.5 || k.cy > height - 0.5;
+std::string DoubtOfIntrinsics(const Intrinsics& intrinsics, int width, int height) {
+  const bool is_outside = intrinsics.cx < -0.5 || intrinsics.cy < -0.5 ||
+                          intrinsics.cx > width - 0.5 || intrinsics.cy > height - 0.5;
   const auto is_far = [](double place, int size) {
     return std::abs(place - 0.5 * (size - 1)) > std::max(0.2 * size, 2.0);
   };
-  const bool is_aside = is_far(k.cx, width) || is_far(k.cy, height);
+  const bool is_aside = is_far(intrinsics.cx, width) || is_far(intrinsics.cy, height);
   if (is_aside) {
     return fmt::format("the principal point ({:g}, {:g}) lies {} the images of {} × {} pixels{}",
-                       k.cx, k.cy, is_outside ? "outside" : "far from the middle of", width, height,
-                       SuggestedScale(k, width, height));
+                       intrinsics.cx, intrinsics.cy,
+                       is_outside ? "outside" : "far from the middle of", width, height,
+                       SuggestedScale(intrinsics, width, height));
   }
-  const double across = Degrees(2 * std::atan(0.5 * width / k.fx));
-  const double down = Degrees(2 * std::atan(0.5 * height / k.fy));
+  const double across = Degrees(2 * std::atan(0.5 * width / intrinsics.fx));
+  const double down = Degrees(2 * std::atan(0.5 * height / intrinsics.fy));
   for (const double view : {across, down}) {
     if (view >= 1 && view <= 140) continue;
     return fmt::format(
         "images of {} × {} pixels with fx: {:g}, fy: {:g} show {:.3g}° × {:.3g}°; focal lengths "
-        "are "
-        "in pixels of these images",
-        width, height, k.fx, k.fy, across, down);
+        "are in pixels of these images",
+        width, height, intrinsics.fx, intrinsics.fy, across, down);
   }
-  if (k.fx > 1.2 * k.fy || k.fy > 1.2 * k.fx) {
-    return fmt::format("fx: {:g} and fy: {:g} differ, as if pixels were not square", k.fx, k.fy);
+  if (intrinsics.fx > 1.2 * intrinsics.fy || intrinsics.fy > 1.2 * intrinsics.fx) {
+    return fmt::format("fx: {:g} and fy: {:g} differ, as if pixels were not square", intrinsics.fx,
+                       intrinsics.fy);
   }
   return "";
 }

@@ -12,17 +12,13 @@
 #include <vector>
 
 #include "core/error.h"
-#include "scan/delimited_table.h"
 #include "scan/table_numbers.h"
+#include "scan/table_text.h"
 
 namespace lacuna {
 namespace {
 
 constexpr double kNotSeen = std::numeric_limits<double>::quiet_NaN();
-
-bool BeginsWith(std::string_view text, std::string_view begin) {
-  return text.substr(0, begin.size()) == begin;
-}
 
 [[noreturn]] void FailAt(const std::filesystem::path& file, size_t row,
                          const std::string& message) {
@@ -52,11 +48,6 @@ bool IsVariable(std::string_view field) {
   return !field.empty() && field != "NULL" && std::all_of(field.begin(), field.end(), [](char c) {
     return c == '_' || (c >= 'A' && c <= 'Z');
   });
-}
-
-bool IsBlank(const std::vector<std::string_view>& fields) {
-  return std::all_of(fields.begin(), fields.end(),
-                     [](std::string_view field) { return field.empty(); });
 }
 
 // How many columns stand in front of the coordinates in a row of Qualisys, at most 2. The entries
@@ -130,10 +121,10 @@ std::vector<MarkerColumnTriple> MarkersOfMotive(const std::vector<std::string_vi
 
 CaptureTable CaptureTableOf(const std::filesystem::path& file) {
   const std::string content = ReadFilledText(file);
-  if (BeginsWith(content, "NO_OF_FRAMES\t") || BeginsWith(content, "FILE_VERSION\t"))
+  if (content.starts_with("NO_OF_FRAMES\t") || content.starts_with("FILE_VERSION\t"))
     return CaptureTable::kQualisys;
-  if (BeginsWith(content, "scorer,")) return CaptureTable::kDeepLabCut;
-  return BeginsWith(content, "Format Version,") ? CaptureTable::kMotive : CaptureTable::kNone;
+  if (content.starts_with("scorer,")) return CaptureTable::kDeepLabCut;
+  return content.starts_with("Format Version,") ? CaptureTable::kMotive : CaptureTable::kNone;
 }
 
 MarkerTracks ReadQualisysTsv(const std::filesystem::path& file, FileTimes use) {
@@ -161,7 +152,7 @@ MarkerTracks ReadQualisysTsv(const std::filesystem::path& file, FileTimes use) {
 
   const size_t coordinates = 3 * tracks.names.size();
   size_t before = 0;  // columns in front of the coordinates: none, the frame, or frame and time
-  bool has_columns = row < lines.size() && BeginsWith(lines[row], "Frame");
+  bool has_columns = row < lines.size() && lines[row].starts_with("Frame");
   if (has_columns) {
     const std::vector<std::string_view> fields = SplitFields(lines[row++], '\t');
     before = fields.size() > 1 && fields[1] == "Time" ? 2 : 1;
@@ -204,7 +195,7 @@ MarkerTracks ReadMotiveCsv(const std::filesystem::path& file, FileTimes use) {
   size_t row = 1;
   for (; row < lines.size(); ++row) {
     std::vector<std::string_view> fields = SplitFields(lines[row], ',');
-    if (IsBlank(fields)) continue;
+    if (AreEmpty(fields)) continue;
     above.push_back(std::move(fields));
     if (above.back()[0] == "Frame") break;
   }
@@ -224,11 +215,11 @@ MarkerTracks ReadMotiveCsv(const std::filesystem::path& file, FileTimes use) {
   tracks.length_unit = UnitOfMotive(pairs);
   for (const MarkerColumnTriple& marker : markers) tracks.names.push_back(marker.name);
   NumberRepeatedNames(file, &tracks);
-  const bool has_time = axes.size() > 1 && BeginsWith(axes[1], "Time");
+  const bool has_time = axes.size() > 1 && axes[1].starts_with("Time");
   std::vector<double> times;
   for (++row; row < lines.size(); ++row) {
     const std::vector<std::string_view> fields = SplitFields(lines[row], ',');
-    if (IsBlank(fields)) continue;
+    if (AreEmpty(fields)) continue;
     if (fields.size() > axes.size())
       FailAt(file, row, fmt::format("has {} entries; expected {}", fields.size(), axes.size()));
     AddRow(file, lines[row], row, fields, markers, /*zero_is_unseen=*/false, &tracks);
@@ -280,7 +271,7 @@ MarkerTracks ReadDeepLabCutCsv(const std::filesystem::path& file) {
   NumberRepeatedNames(file, &tracks);
   for (; row < lines.size(); ++row) {
     const std::vector<std::string_view> fields = SplitFields(lines[row], ',');
-    if (IsBlank(fields)) continue;
+    if (AreEmpty(fields)) continue;
     if (fields.size() > axes.size())
       FailAt(file, row, fmt::format("has {} entries; expected {}", fields.size(), axes.size()));
     AddRow(file, lines[row], row, fields, markers, /*zero_is_unseen=*/false, &tracks);

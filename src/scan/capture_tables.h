@@ -20,12 +20,12 @@ CaptureTable CaptureTableOf(const std::filesystem::path& file);
 // without a time, that of frame i is i/FREQUENCY. A marker was not seen where its entries are
 // empty, "NULL" or all zero. Throws InputError naming file and line when the header is incomplete,
 // a row does not fit it, there is no row, or times that are used do not ascend.
-MarkerTracks ReadQualisysTsv(const std::filesystem::path& file, FileTimes times);
+MarkerTracks ReadQualisysTsv(const std::filesystem::path& file, FileTimes use);
 
 // The measured positions, i.e. the columns of the type "Marker"; those that a solver has computed
 // for rigid bodies and bones are left out. Names that repeat are numbered. Lengths are in the unit
 // of the first line. Throws InputError likewise.
-MarkerTracks ReadMotiveCsv(const std::filesystem::path& file, FileTimes times);
+MarkerTracks ReadMotiveCsv(const std::filesystem::path& file, FileTimes use);
 
 // Points that DeepLabCut has triangulated: the rows scorer, perhaps individuals, bodyparts and
 // coords above the columns. Names are those of the body parts, behind "individual " where there are

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "scan/column_name.h"
 #include "scan/delimited_table.h"
+#include "scan/table_text.h"
 
 namespace lacuna {
 namespace {

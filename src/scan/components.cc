@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <unordered_map>
 #include <vector>
 
+#include "core/disjoint_sets.h"
 #include "core/median.h"
 #include "geometry/nearest.h"
 
@@ -19,23 +19,8 @@ namespace {
 
 constexpr size_t kShown = 3;  // components that are described
 
-class MergedSets {
- public:
-  explicit MergedSets(size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int Find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void Join(int a, int b) { parent_[Find(a)] = Find(b); }
-
- private:
-  std::vector<int> parent_;
-};
-
-// Numbers the sets of the points by their total weight, the heaviest first. `set` is the set of
-// each point, −1 for none.
+// Numbers the sets of the points by their total weight, the heaviest first, and sets of equal
+// weight by their names. `set` is the name of each point's set, −1 for none.
 Eigen::VectorXi NumberByWeight(const Eigen::VectorXi& set, const Eigen::VectorXd& weight) {
   std::map<int, double> total;
   for (Eigen::Index i = 0; i < set.size(); ++i) {
@@ -85,7 +70,7 @@ struct CellHash {
 
 Eigen::VectorXi ComponentsOfSurface(const TriMesh& surface) {
   const Eigen::Matrix3Xd& vertices = surface.vertices;
-  MergedSets sets(static_cast<size_t>(vertices.cols()));
+  DisjointSets sets(static_cast<size_t>(vertices.cols()));
   std::map<std::array<double, 3>, int> at_place;
   Eigen::VectorXd area = Eigen::VectorXd::Zero(vertices.cols());
   Eigen::VectorXi set = Eigen::VectorXi::Constant(vertices.cols(), -1);
@@ -93,15 +78,15 @@ Eigen::VectorXi ComponentsOfSurface(const TriMesh& surface) {
     const Eigen::Vector3i corners = surface.triangles.col(t);
     const Eigen::Matrix3d places = vertices(Eigen::all, corners);
     if (!places.allFinite()) continue;
-    sets.Join(corners[0], corners[1]);
-    sets.Join(corners[1], corners[2]);
+    sets.Merge(corners[0], corners[1]);
+    sets.Merge(corners[1], corners[2]);
     area[corners[0]] += (places.col(1) - places.col(0)).cross(places.col(2) - places.col(0)).norm();
     for (const int corner : corners) {
       if (set[corner] >= 0) continue;
       set[corner] = corner;
       const Eigen::Vector3d place = vertices.col(corner);
-      sets.Join(corner,
-                at_place.try_emplace({place.x(), place.y(), place.z()}, corner).first->second);
+      sets.Merge(corner,
+                 at_place.try_emplace({place.x(), place.y(), place.z()}, corner).first->second);
     }
   }
   for (int& s : set) {
@@ -130,12 +115,12 @@ Eigen::VectorXi ComponentsOfCloud(const Eigen::Matrix3Xd& points) {
     }
     set[finite[k]] = cells.try_emplace(cell, static_cast<int>(cells.size())).first->second;
   }
-  MergedSets sets(cells.size());
+  DisjointSets sets(cells.size());
   for (const auto& [cell, name] : cells) {
     for (int neighbour = 0; neighbour < 13; ++neighbour) {  // half of the 26: each pair once
       const auto found = cells.find({cell[0] + neighbour / 9 - 1, cell[1] + neighbour / 3 % 3 - 1,
                                      cell[2] + neighbour % 3 - 1});
-      if (found != cells.end()) sets.Join(name, found->second);
+      if (found != cells.end()) sets.Merge(name, found->second);
     }
   }
   for (const Eigen::Index i : finite) set[i] = sets.Find(set[i]);

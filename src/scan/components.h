@@ -9,8 +9,9 @@
 
 namespace lacuna {
 
-// The component of each vertex or point, numbered from 0, the largest first; −1 for points that are
-// not finite and vertices without a triangle. Components of a surface are connected by triangles,
+// The component of each vertex or point, numbered from 0, the largest first, and among equally
+// large ones that of the first vertex or point; −1 for points that are not finite and vertices
+// without a triangle. Components of a surface are connected by triangles,
 // of which vertices at equal places count as one, and compared by area. Components of a cloud are
 // connected through cubes of a grid that touch, whose width is four times the spacing of the points
 // and at least a tenth of their median distance from their middle, and compared by their number of

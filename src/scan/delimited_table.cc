@@ -1,40 +1,25 @@
 #include "scan/delimited_table.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "core/error.h"
-#include "core/text_file.h"
 #include "scan/column_name.h"
+#include "scan/table_layout.h"
 #include "scan/table_numbers.h"
+#include "scan/table_text.h"
 
 namespace lacuna {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
-constexpr std::string_view kDelimiters = ";,\t";
-
-std::string_view Unquote(std::string_view text) {
-  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
-    return Trim(text.substr(1, text.size() - 2));
-  }
-  return text;
-}
-
-// The place of the quote that closes the entry opened at `begin`: two quotes stand for one in it.
-size_t FindClosingQuote(std::string_view line, size_t begin) {
-  size_t end = line.find('"', begin + 1);
-  while (end != std::string_view::npos && line.substr(end + 1).starts_with('"'))
-    end = line.find('"', end + 2);
-  return end;
-}
+// What begins the lines of the block above a table of DICe, the Digital Image Correlation Engine.
+constexpr std::string_view kRemarkOfDice = "***";
 
 // `entry` with one quote in the place of two.
 std::string WithSingleQuotes(std::string_view entry) {
@@ -44,93 +29,6 @@ std::string WithSingleQuotes(std::string_view entry) {
     if (entry.substr(at, 2) == "\"\"") ++at;
   }
   return text;
-}
-
-bool AreNumbers(const std::vector<std::string_view>& fields) {
-  return std::all_of(fields.begin(), fields.end(),
-                     [](std::string_view field) { return ParseDecimal(field).has_value(); });
-}
-
-bool AreEmpty(const std::vector<std::string_view>& fields) {
-  return std::all_of(fields.begin(), fields.end(),
-                     [](std::string_view field) { return field.empty(); });
-}
-
-// `line` without what stands in quotes, or all of it where no delimiter is outside of them.
-std::string OutsideQuotes(std::string_view line) {
-  std::string outside;
-  bool is_quoted = false;
-  for (const char c : line) {
-    if (c == '"') is_quoted = !is_quoted;
-    if (!is_quoted) outside += c;
-  }
-  return outside.find_first_of(kDelimiters) == std::string::npos ? std::string(line) : outside;
-}
-
-// The first line of `rest` that is neither empty nor a comment.
-std::string_view NextRow(std::string_view rest) {
-  while (!rest.empty()) {
-    const size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view line = Trim(rest.substr(0, end));
-    if (!line.empty() && line.front() != '#') return line;
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return rest;
-}
-
-// Whether `delimiter` divides a line of names and the row of numbers below it into as many entries.
-bool DividesAlike(std::string_view names, std::string_view row, char delimiter) {
-  const size_t count = SplitFields(names, delimiter).size();
-  const std::vector<std::string_view> fields = SplitFields(row, delimiter);
-  return count > 1 && fields.size() == count && AreNumbers(fields);
-}
-
-// The delimiter of a table of which `line` is the first line and `rest` what follows it.
-char FindDelimiter(std::string_view line, std::string_view rest) {
-  const std::string outside = OutsideQuotes(line);
-  const auto has = [&outside](char c) { return outside.find(c) != std::string::npos; };
-  if (has('\t') && (has(';') || has(','))) {
-    // Names may contain the other delimiters, as "Time, s" does.
-    const std::string_view row = NextRow(rest);
-    if (DividesAlike(line, row, '\t') && !DividesAlike(line, row, has(';') ? ';' : ','))
-      return '\t';
-  }
-  if (has(';')) return ';';
-  if (has(',')) {
-    // The commas are decimal ones where tabs or blanks cut the line into numbers.
-    for (const char candidate : {'\t', ' '}) {
-      const std::vector<std::string_view> fields = SplitFields(line, candidate);
-      if (has(candidate) && fields.size() > 1 && AreNumbers(fields)) return candidate;
-    }
-    return ',';
-  }
-  return has('\t') ? '\t' : ' ';
-}
-
-// The length of the title above the names of the columns, with which `text` begins; 0: it has none.
-size_t LengthOfTitle(std::string_view text) {
-  constexpr int kMostLines = 8;
-  size_t at = 0;
-  for (int row = 0; row < kMostLines && at < text.size(); ++row) {
-    const size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view line = Trim(text.substr(at, end - at));
-    if (line.find_first_of(kDelimiters) != std::string_view::npos) {
-      if (row == 0 || line.front() == '#') return 0;
-      return AreNumbers(SplitFields(line, FindDelimiter(line, text.substr(end)))) ? 0 : at;
-    }
-    const std::vector<std::string_view> words = SplitFields(line, ' ');
-    if (AreNumbers(words) && (row == 0 || words.size() > 1)) return 0;
-    at = std::min(end + 1, text.size());
-  }
-  return 0;
-}
-
-// Whether `line` is the number of the points in the rows below it, which `rest` begins with.
-bool IsCount(std::string_view line, std::string_view rest) {
-  const std::optional<double> count = ParseNumber(line);
-  if (!count || !(*count >= 1) || *count != std::floor(*count)) return false;
-  const std::string_view next = NextRow(rest);
-  return SplitFields(next, FindDelimiter(next, "")).size() >= 3;
 }
 
 std::string_view WithoutBrackets(std::string_view text) {
@@ -227,230 +125,159 @@ void DoubtFirstRow(DelimitedTable* table) {
       values.cols() > 3 ? ", …" : ""));
 }
 
-// The columns of this name, with regard to the case of its letters or without.
-std::vector<Eigen::Index> ColumnsNamed(const DelimitedTable& table, const std::string& name,
-                                       bool case_counts) {
-  const auto is_same = [case_counts](char a, char b) { return IsSameLetter(a, b, case_counts); };
-  std::vector<Eigen::Index> columns;
-  for (size_t column = 0; column < table.header.size(); ++column) {
-    const std::string& other = table.header[column];
-    if (std::equal(name.begin(), name.end(), other.begin(), other.end(), is_same))
-      columns.push_back(static_cast<Eigen::Index>(column));
+// Reads a table line by line.
+class TableReader {
+ public:
+  explicit TableReader(const std::filesystem::path& file) : content_(ReadFilledText(file)) {
+    table_.file = file;
   }
-  return columns;
-}
 
-// The only one of `columns`, nothing where there is none.
-std::optional<Eigen::Index> OnlyColumn(const DelimitedTable& table, const std::string& name,
-                                       const std::vector<Eigen::Index>& columns) {
-  if (columns.empty()) return std::nullopt;
-  if (columns.size() > 1)
-    throw InputError(
-        {table.file.string()},
-        fmt::format("has {} columns \"{}\", of which the numbers are {} and {}; rename "
-                    "one of them, or give the number of the one that is meant",
-                    columns.size(), name, columns[0] + 1, columns[1] + 1));
-  return columns.front();
-}
-
-}  // namespace
-
-std::optional<char> DeclaredDelimiter(std::string_view line) {
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  if (line.size() == 7 && line.front() == '"' && line.back() == '"') line = line.substr(1, 5);
-  if (line.size() != 5 || (line.substr(0, 4) != "sep=" && line.substr(0, 4) != "SEP="))
-    return std::nullopt;
-  return std::string_view(";,\t| ").find(line[4]) == std::string_view::npos
-             ? std::nullopt
-             : std::optional<char>(line[4]);
-}
-
-bool IsSameLetter(char a, char b, bool case_counts) {
-  if (case_counts) return a == b;
-  return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-}
-
-std::string_view Trim(std::string_view text) {
-  const size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return text.substr(0, 0);
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
-
-std::vector<std::string_view> SplitLines(std::string_view content) {
-  std::vector<std::string_view> lines;
-  for (size_t at = 0; at < content.size();) {
-    const size_t end = std::min(content.find('\n', at), content.size());
-    std::string_view line = content.substr(at, end - at);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    lines.push_back(line);
-    at = end + 1;
+  DelimitedTable Read() {
+    while (at_ < content_.size()) {
+      NextLine();
+      if (SkipsLine()) continue;
+      const std::vector<std::string_view> fields = SplitFields(line_, delimiter_);
+      if (width_ == 0 && TakeHeader(fields)) continue;
+      if (table_.line.empty() && TakeSecondHeader(fields, &table_)) continue;
+      if (AreEmpty(fields))
+        empty_rows_.push_back({line_number_, fields.size()});
+      else
+        TakeRow(fields);
+    }
+    if (table_.line.empty()) throw InputError({table_.file.string()}, "holds no row of numbers");
+    commas_.RefuseThousands(table_.file, delimiter_);
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    table_.values = Eigen::Map<const RowMajor>(entries_.data(), table_.line.size(), width_);
+    DoubtFirstRow(&table_);
+    return std::move(table_);
   }
-  return lines;
-}
 
-std::vector<std::string_view> SplitFields(std::string_view line, char delimiter) {
-  std::vector<std::string_view> fields;
-  if (delimiter == ' ') {
-    size_t at = line.find_first_not_of(kBlanks);
-    while (at != std::string_view::npos) {
-      const size_t end = line.find_first_of(kBlanks, at);
-      fields.push_back(line.substr(at, end == std::string_view::npos ? end : end - at));
-      at = line.find_first_not_of(kBlanks, end);
-    }
-    return fields;
+ private:
+  void NextLine() {
+    begin_ = at_;
+    const size_t end = std::min(content_.find('\n', at_), content_.size());
+    line_ = std::string_view(content_).substr(at_, end - at_);
+    at_ = end + 1;
+    ++line_number_;
   }
-  size_t at = 0;
-  while (true) {
-    // A quoted entry may contain the delimiter.
-    size_t from = line.find_first_not_of(' ', at);
-    const bool is_quoted = from != std::string_view::npos && line[from] == '"';
-    if (is_quoted) from = FindClosingQuote(line, from);
-    const size_t end =
-        line.find(delimiter, is_quoted && from != std::string_view::npos ? from : at);
-    fields.push_back(
-        Unquote(Trim(line.substr(at, end == std::string_view::npos ? end : end - at))));
-    if (end == std::string_view::npos) return fields;
-    at = end + 1;
+
+  // What follows the line.
+  std::string_view Rest() const {
+    return std::string_view(content_).substr(std::min(at_, content_.size()));
   }
-}
 
-std::string ReadFilledFile(const std::filesystem::path& file) {
-  std::string content = ReadWholeFile(file);
-  if (content.empty()) throw InputError({file.string()}, "is empty");
-  return content;
-}
+  // Skips a line that holds neither names nor numbers of columns, and what belongs to it; finds the
+  // delimiter before the first other line. Returns whether there was something to skip.
+  bool SkipsLine() {
+    if (const auto declared = DeclaredDelimiter(line_); declared && line_number_ == 1) {
+      delimiter_ = *declared;
+      return true;
+    }
+    const std::string_view text = Trim(line_);
+    if (text.empty()) return true;
+    if (text.front() == '#') {
+      if (width_ == 0) TakeComment(text);
+      return true;
+    }
+    if (width_ == 0 && text == kStageHeader) {
+      at_ = std::min(content_.find('\n', at_), content_.size() - 1) + 1;  // and the line below
+      ++line_number_;
+      return true;
+    }
+    if (width_ == 0 && text.starts_with(kRemarkOfDice)) return true;
+    if (table_.line.empty() && IsCount(text, Rest())) return true;
+    if (delimiter_ != 0) return false;
+    if (SkipsTitle()) return true;
+    if (text.starts_with("//")) line_.remove_prefix(line_.find("//") + 2);
+    delimiter_ = FindDelimiter(Trim(line_), Rest());
+    return false;
+  }
 
-std::string ReadFilledText(const std::filesystem::path& file) {
-  std::string content = ReadTextFile(file);
-  if (content.empty()) throw InputError({file.string()}, "is empty");
-  return content;
-}
+  void TakeComment(std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of('#'), text.size()));
+    comment_ = Trim(text);
+    table_.comments.emplace_back(comment_);
+  }
 
-DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
-  const std::string content = ReadFilledText(file);
-  DelimitedTable table;
-  table.file = file;
-  std::vector<double> entries;
-  size_t width = 0;
-  char delimiter = 0;
-  int line_number = 0;
-  std::string_view comment;  // the last above the first row
-  DecimalCommas commas;
-  struct EmptyRow {
-    int line;
-    size_t width;
-  };
-  std::vector<EmptyRow> empty_rows;  // those that no other row has followed so far
-  const auto check_width = [&](int line, size_t entry_count) {
-    if (entry_count == width) return;
-    const bool may_be_decimal = delimiter == ',' && entry_count == 2 * width;
-    throw InputError(
-        {file.string(), line, 1},
-        fmt::format("has {} entries where the first line has {}{}", entry_count, width,
-                    may_be_decimal ? "; decimal commas need another delimiter, such as ;" : ""));
-  };
-  for (size_t at = 0; at < content.size();) {
-    const size_t begin = at, end = std::min(content.find('\n', at), content.size());
-    std::string_view line(content.data() + at, end - at);
-    at = end + 1;
-    ++line_number;
-    const std::string_view rest = std::string_view(content).substr(std::min(at, content.size()));
-    if (const auto declared = DeclaredDelimiter(line); declared && line_number == 1) {
-      delimiter = *declared;
-      continue;
+  bool SkipsTitle() {
+    const std::string_view from = std::string_view(content_).substr(begin_);
+    const size_t title = LengthOfTitle(from);
+    if (title == 0) return false;
+    at_ = begin_ + title;
+    line_number_ += static_cast<int>(std::count(from.begin(), from.begin() + title, '\n')) - 1;
+    return true;
+  }
+
+  // Takes the line for the names or, if it consists of numbers, only for the width of the table.
+  // Returns whether it holds names.
+  bool TakeHeader(const std::vector<std::string_view>& fields) {
+    width_ = fields.size();
+    if (!comment_.empty()) {
+      const std::vector<std::string_view> names = SplitFields(comment_, delimiter_);
+      if (names.size() == width_) table_.commented_header.assign(names.begin(), names.end());
     }
-    if (Trim(line).empty()) continue;
-    if (Trim(line).front() == '#') {
-      if (width > 0) continue;
-      comment = Trim(line);
-      comment.remove_prefix(std::min(comment.find_first_not_of('#'), comment.size()));
-      comment = Trim(comment);
-      table.comments.emplace_back(comment);
-      continue;
+    if (AreNumbers(fields)) return false;
+    std::transform(fields.begin(), fields.end(), std::back_inserter(table_.header),
+                   WithSingleQuotes);
+    DoubtHeader(&table_, line_number_);
+    return true;
+  }
+
+  // Takes a row of numbers, and the empty rows above it.
+  void TakeRow(const std::vector<std::string_view>& fields) {
+    for (const EmptyRow& empty : empty_rows_) {
+      CheckWidth(empty.line, empty.width);
+      entries_.insert(entries_.end(), width_, std::numeric_limits<double>::quiet_NaN());
+      table_.line.push_back(empty.line);
     }
-    if (width == 0 && Trim(line) == kStageHeader) {
-      at = std::min(content.find('\n', at), content.size() - 1) + 1;  // and the line below
-      ++line_number;
-      continue;
-    }
-    if (width == 0 && Trim(line).substr(0, 3) == "***") continue;
-    if (table.line.empty() && IsCount(Trim(line), rest)) continue;
-    if (delimiter == 0) {
-      const std::string_view from = std::string_view(content).substr(begin);
-      if (const size_t title = LengthOfTitle(from); title > 0) {
-        at = begin + title;
-        line_number += static_cast<int>(std::count(from.begin(), from.begin() + title, '\n')) - 1;
-        continue;
-      }
-      if (Trim(line).starts_with("//")) line.remove_prefix(line.find("//") + 2);
-      delimiter = FindDelimiter(Trim(line), rest);
-    }
-    const std::vector<std::string_view> fields = SplitFields(line, delimiter);
-    if (width == 0) {
-      width = fields.size();
-      if (!comment.empty()) {
-        const std::vector<std::string_view> names = SplitFields(comment, delimiter);
-        if (names.size() == width) table.commented_header.assign(names.begin(), names.end());
-      }
-      if (!AreNumbers(fields)) {
-        std::transform(fields.begin(), fields.end(), std::back_inserter(table.header),
-                       WithSingleQuotes);
-        DoubtHeader(&table, line_number);
-        continue;
-      }
-    }
-    if (table.line.empty() && TakeSecondHeader(fields, &table)) continue;
-    if (AreEmpty(fields)) {
-      empty_rows.push_back({line_number, fields.size()});
-      continue;
-    }
-    for (const EmptyRow& empty : empty_rows) {
-      check_width(empty.line, empty.width);
-      entries.insert(entries.end(), width, std::numeric_limits<double>::quiet_NaN());
-      table.line.push_back(empty.line);
-    }
-    empty_rows.clear();
-    check_width(line_number, fields.size());
+    empty_rows_.clear();
+    CheckWidth(line_number_, fields.size());
     for (const std::string_view field : fields) {
-      const int column = static_cast<int>(field.data() - line.data()) + 1;
+      const int column = static_cast<int>(field.data() - line_.data()) + 1;
       const std::optional<double> value = ParseDecimal(field);
       if (!value)
-        throw InputError({file.string(), line_number, column},
+        throw InputError({table_.file.string(), line_number_, column},
                          fmt::format("got \"{}\"; expected a number{}", field,
                                      IsDate(field) ? ", such as seconds since the first row: dates "
                                                      "and times of day are not read"
                                                    : ""));
-      commas.Add(field, line_number, column);
-      entries.push_back(*value);
+      commas_.Add(field, line_number_, column);
+      entries_.push_back(*value);
     }
-    table.line.push_back(line_number);
+    table_.line.push_back(line_number_);
   }
-  if (table.line.empty()) throw InputError({file.string()}, "holds no row of numbers");
-  commas.RefuseThousands(file, delimiter);
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  table.values = Eigen::Map<const RowMajor>(entries.data(), table.line.size(), width);
-  DoubtFirstRow(&table);
-  return table;
-}
 
-std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::string& name) {
-  const std::vector<Eigen::Index> same = ColumnsNamed(table, name, /*case_counts=*/true);
-  if (!same.empty()) return OnlyColumn(table, name, same);
-  int number = 0;
-  const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (problem == std::errc() && end == name.data() + name.size() && number >= 1 &&
-      number <= table.values.cols()) {
-    return number - 1;
+  void CheckWidth(int line, size_t entries) const {
+    if (entries == width_) return;
+    const bool may_be_decimal = delimiter_ == ',' && entries == 2 * width_;
+    throw InputError(
+        {table_.file.string(), line, 1},
+        fmt::format("has {} entries where the first line has {}{}", entries, width_,
+                    may_be_decimal ? "; decimal commas need another delimiter, such as ;" : ""));
   }
-  return OnlyColumn(table, name, ColumnsNamed(table, name, /*case_counts=*/false));
-}
 
-Eigen::Index RequireColumn(const DelimitedTable& table, const std::string& name) {
-  if (const std::optional<Eigen::Index> column = FindColumn(table, name)) return *column;
-  const std::string there =
-      table.header.empty() ? fmt::format("it has no header and {} columns", table.values.cols())
-                           : fmt::format("its columns are {}", fmt::join(table.header, ", "));
-  throw InputError({table.file.string()}, fmt::format("has no column \"{}\"; {}", name, there));
+  struct EmptyRow {
+    int line;
+    size_t width;
+  };
+
+  const std::string content_;
+  DelimitedTable table_;
+  std::string_view line_;      // the current one
+  size_t begin_ = 0, at_ = 0;  // where it begins in the content, and where the next one does
+  int line_number_ = 0;
+  char delimiter_ = 0;        // 0: not known yet
+  size_t width_ = 0;          // entries of a row; 0: not known yet
+  std::string_view comment_;  // the last above the first row
+  std::vector<double> entries_;
+  std::vector<EmptyRow> empty_rows_;  // those that no other row has followed so far
+  DecimalCommas commas_;
+};
+
+}  // namespace
+
+DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
+  return TableReader(file).Read();
 }
 
 }  // namespace lacuna

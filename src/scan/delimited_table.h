@@ -1,4 +1,29 @@
 // Reads tables of numbers from text files: CSV, TSV and columns separated by blanks.
+//
+// What is skipped:
+// - lines that begin with '#', and empty lines;
+// - above the table, lines that begin with "***", as in files of DICe;
+// - the stage of GOM software (kStageHeader) and the line below it;
+// - a title: lines without delimiter, the first of which is no row of numbers, above a line of
+//   names with delimiters;
+// - a line that holds the number of the rows below it alone;
+// - rows at the end of the table whose entries are all empty, as spreadsheet programs leave them.
+//
+// The names of the columns:
+// - The first line is the header when one of its entries is neither a number nor empty. "//" in
+//   front of it is no part of a name. Two quotes in the quotes of a name stand for one. A byte
+//   order mark is not part of the first entry (ReadTextFile).
+// - The line below it may hold units, as "(s)" or "s", or a second name: where names are missing or
+//   repeated in the first, as in ",m0,,,m1,," above "t,x,y,z,x,y,z", the name of a column is that
+//   of its group and its own, m0_x.
+//
+// The delimiter is, in this order:
+// - the one that a first line "sep=;" declares;
+// - the tab where it alone divides the line of names and the row below into as many entries;
+// - the first of ';', ',' and tab that occurs in the first line outside of quotes;
+// - any run of blanks.
+//
+// Where the delimiter is not ',', and in quotes, numbers may have a decimal comma (DecimalCommas).
 #ifndef LACUNA_SCAN_DELIMITED_TABLE_H_
 #define LACUNA_SCAN_DELIMITED_TABLE_H_
 
@@ -11,20 +36,7 @@
 
 namespace lacuna {
 
-// Lines starting with '#', empty lines and, above the table, lines starting with "***" are skipped,
-// and the stage of GOM software, a table of its own (kStageHeader). Rows at the end of the table
-// whose entries are all empty, as spreadsheet programs leave them, are no rows.
-// A title is skipped, too: lines without delimiter, the first of which is no row of numbers, above
-// a line of names with delimiters; and a line that holds the number of the rows below it alone. The
-// first line is the header when one of its entries is neither a number nor empty; "//" in front of
-// it is no part of a name. The line below it may hold units, as "(s)" or "s", or a second name:
-// where names are missing or repeated in the first, as in ",m0,,,m1,," above "t,x,y,z,x,y,z", the
-// name of a column is that of its group and its own, m0_x. The delimiter is the one that a first
-// line "sep=;" declares, and otherwise the first of ';', ',' and tab that occurs in the first line
-// outside of quotes, or else any run of blanks; a tab comes first where it alone divides the line
-// of names and the row below into as many entries. Where the delimiter is not ',', and in quotes,
-// numbers may have a decimal comma (DecimalCommas). Two quotes in the quotes of a name stand for
-// one. A byte order mark is not part of the first entry (ReadTextFile).
+// The header of the stage in tables of GOM software, a table of its own above the other one.
 inline constexpr std::string_view kStageHeader = "stage;index;relative_time;date";
 
 struct DelimitedTable {
@@ -52,27 +64,6 @@ std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::s
 
 // The same, but throws InputError listing the columns of the table when there is no such column.
 Eigen::Index RequireColumn(const DelimitedTable& table, const std::string& name);
-
-// The delimiter that a line such as "sep=;" declares, with which spreadsheet programs begin a file.
-std::optional<char> DeclaredDelimiter(std::string_view line);
-
-// Whether two letters are the same, with regard to their case or without.
-bool IsSameLetter(char a, char b, bool case_counts);
-
-// Without blanks, tabs and line ends at both ends.
-std::string_view Trim(std::string_view text);
-
-// The lines of `content` without their ends, which may be those of Windows.
-std::vector<std::string_view> SplitLines(std::string_view content);
-
-// Cuts `line` at the delimiter (' ' stands for any run of blanks) and trims blanks around each
-// entry. A delimiter between quotes does not count. The entries refer to the memory of `line`.
-std::vector<std::string_view> SplitFields(std::string_view line, char delimiter);
-
-// The content of a file: all of its bytes, or its text (ReadTextFile). Throw InputError when it
-// cannot be read or is empty.
-std::string ReadFilledFile(const std::filesystem::path& file);
-std::string ReadFilledText(const std::filesystem::path& file);
 
 }  // namespace lacuna
 

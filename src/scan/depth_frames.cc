@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include "core/error.h"
 #include "scan/camera_doubts.h"
@@ -57,7 +58,7 @@ std::string DescribeCorrection(const CameraCorrection& correction) {
   if (!correction.applied) return "; " + correction.message;
   std::string text =
       fmt::format("; pose corrected by {} and {:.3g}°, distance to the other views {} → {}",
-                  Millimetres(correction.translation), correction.angle * 180 / M_PI,
+                  Millimetres(correction.translation), correction.angle * 180 / std::numbers::pi,
                   Millimetres(correction.rms_before), Millimetres(correction.rms_after));
   if (correction.free_directions > 0) {
     text += fmt::format(", {} of 6 directions of motion left as given", correction.free_directions);

@@ -10,7 +10,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "scan/delimited_table.h"
+#include "scan/table_text.h"
 
 namespace lacuna {
 namespace {

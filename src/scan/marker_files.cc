@@ -16,6 +16,7 @@
 #include "scan/column_units.h"
 #include "scan/delimited_table.h"
 #include "scan/table_numbers.h"
+#include "scan/table_text.h"
 #include "scan/time_series.h"
 
 namespace lacuna {
@@ -94,25 +95,25 @@ TrcHeader ReadTrcHeader(const std::filesystem::path& file,
 }  // namespace
 
 MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns,
-                              FileTimes times) {
+                              FileTimes use) {
   const std::string extension = LowerExtension(file);
-  if (extension == ".c3d") return ReadC3d(file, times);
-  if (extension == ".trc") return ReadTrc(file, times);
+  if (extension == ".c3d") return ReadC3d(file, use);
+  if (extension == ".trc") return ReadTrc(file, use);
   switch (CaptureTableOf(file)) {
     case CaptureTable::kQualisys:
-      return ReadQualisysTsv(file, times);
+      return ReadQualisysTsv(file, use);
     case CaptureTable::kMotive:
-      return ReadMotiveCsv(file, times);
+      return ReadMotiveCsv(file, use);
     case CaptureTable::kDeepLabCut:
       return ReadDeepLabCutCsv(file);
     case CaptureTable::kNone:
       break;
   }
-  return ReadMarkerCsv(file, columns, times);
+  return ReadMarkerCsv(file, columns, use);
 }
 
 MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumns& columns,
-                           FileTimes times) {
+                           FileTimes use) {
   const DelimitedTable table = ReadDelimitedTable(file);
   MarkerTracks tracks;
   tracks.warnings = table.notes;
@@ -156,9 +157,9 @@ MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumn
   }
   if (!columns.time.empty()) {
     const Eigen::Index time = RequireColumn(table, columns.time);
-    if (times == FileTimes::kUsed)
+    if (use == FileTimes::kUsed)
       RefuseOtherUnit(table, time, columns.time_unit, kTime, "time_unit");
-    SetTimes(file, columns.time_unit * table.values.col(time), 0, times, &tracks);
+    SetTimes(file, columns.time_unit * table.values.col(time), 0, use, &tracks);
   }
   return tracks;
 }
@@ -183,9 +184,7 @@ MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes use) {
   DecimalCommas commas;
   for (size_t row = 5; row < lines.size(); ++row) {
     const std::vector<std::string_view> fields = SplitFields(lines[row], '\t');
-    if (std::all_of(fields.begin(), fields.end(), [](auto field) { return field.empty(); })) {
-      continue;
-    }
+    if (AreEmpty(fields)) continue;
     const int line_number = static_cast<int>(row) + 1;
     const size_t expected = 2 + 3 * tracks.names.size();
     const bool has_too_many = std::any_of(fields.begin() + std::min(expected, fields.size()),

@@ -24,10 +24,10 @@ struct MarkerColumns {
 // different units or its time has another unit than `time_unit`, or when times that are used do not
 // ascend. Names that occur several times are numbered in the other formats, with a warning.
 MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns,
-                              FileTimes times = FileTimes::kUsed);
+                              FileTimes use = FileTimes::kUsed);
 MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumns& columns,
-                           FileTimes times = FileTimes::kUsed);
-MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes times = FileTimes::kUsed);
+                           FileTimes use = FileTimes::kUsed);
+MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes use = FileTimes::kUsed);
 
 // Reads the 3-D points of a C3D file (The C3D File Format User Guide, https://www.c3d.org),
 // integers or floating-point numbers written on Intel, DEC or SGI/MIPS processors. A point with a
@@ -36,7 +36,7 @@ MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes times = FileTi
 // error. Where the 16-bit frame numbers of the header do not suffice, the parameters POINT:FRAMES,
 // POINT:LONG_FRAMES or TRIAL:ACTUAL_START_FIELD and ACTUAL_END_FIELD give the number of frames. A
 // file that has room for more frames than these and its header say leads to a warning.
-MarkerTracks ReadC3d(const std::filesystem::path& file, FileTimes times = FileTimes::kUsed);
+MarkerTracks ReadC3d(const std::filesystem::path& file, FileTimes use = FileTimes::kUsed);
 
 }  // namespace lacuna
 

@@ -16,6 +16,7 @@
 #include "scan/marker_files.h"
 #include "scan/time_series.h"
 #include "scan/track_doubts.h"
+#include "scan/yaml_format.h"
 
 namespace lacuna {
 namespace {
@@ -185,8 +186,8 @@ std::string WriteMarkerFrames(const std::filesystem::path& folder, const std::ve
       "  kind: markers\n  file: markers.csv\n  columns: {{{}}}\n  marker_places:\n", columns);
   for (size_t m = 0; m < markers.names.size(); ++m) {
     const Eigen::Vector3d place = markers.places.col(static_cast<Eigen::Index>(m));
-    yaml += fmt::format("    - {{name: {}, position: [{:.6f} m, {:.6f} m, {:.6f} m]}}\n",
-                        QuotedText(markers.names[m]), place.x(), place.y(), place.z());
+    yaml += fmt::format("    - {{name: {}, position: {}}}\n", QuotedText(markers.names[m]),
+                        FormatVector(place, "m"));
   }
   return yaml;
 }

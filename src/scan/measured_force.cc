@@ -4,6 +4,7 @@
 
 #include "core/quoted_text.h"
 #include "scan/time_series.h"
+#include "scan/yaml_format.h"
 
 namespace lacuna {
 
@@ -46,12 +47,16 @@ std::string DescribeForce(const MeasuredForce& force) {
 
 std::string WriteForce(const std::filesystem::path& folder, const MeasuredForce& force,
                        size_t number) {
-  const std::string name = fmt::format("force{}.csv", number);
-  WriteTimeSeries(folder / name, force.times, force.forces);
-  const std::string region =
-      force.region ? fmt::format(", region: {}", FormatRegion(*force.region)) : "";
-  return fmt::format("{{name: {}, file: {}, time: time, x: x, y: y, z: z, unit: N{}}}",
-                     QuotedText(force.name), name, region);
+  std::string item = fmt::format("{{name: {}", QuotedText(force.name));
+  if (force.times.size() == 1) {  // a table of one row would not cover the frames
+    item += ", constant: " + FormatVector(force.forces.col(0), "N");
+  } else {
+    const std::string file = fmt::format("force{}.csv", number);
+    WriteTimeSeries(folder / file, force.times, force.forces);
+    item += fmt::format(", file: {}, time: time, x: x, y: y, z: z, unit: N", file);
+  }
+  if (force.region) item += ", region: " + FormatRegion(*force.region);
+  return item + "}";
 }
 
 }  // namespace lacuna

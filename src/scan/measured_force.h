@@ -38,7 +38,7 @@ std::vector<MeasuredForce> ReadForces(const Config& config, const DataLocation& 
 std::string DescribeForce(const MeasuredForce& force);
 
 // The force as an item of `forces` in recording.yaml; its values go into the file force`number`.csv
-// of `folder`.
+// of `folder`, a single value as `constant` into the item.
 std::string WriteForce(const std::filesystem::path& folder, const MeasuredForce& force,
                        size_t number);
 

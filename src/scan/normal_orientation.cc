@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <queue>
 #include <tuple>
 #include <vector>
@@ -123,7 +124,7 @@ Eigen::VectorXd VoteBySensors(const Eigen::Matrix3Xd& points, const Eigen::Matri
 Eigen::VectorXd VoteByExtremes(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& normals,
                                const std::vector<int>& part, int part_count) {
   constexpr int kDirections = 400;
-  const double golden_angle = M_PI * (3 - std::sqrt(5.0));
+  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
   Eigen::VectorXd vote = Eigen::VectorXd::Zero(part_count);
   Eigen::VectorXd weight = Eigen::VectorXd::Zero(part_count);
   for (int d = 0; d < kDirections; ++d) {

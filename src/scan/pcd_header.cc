@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "scan/delimited_table.h"
 #include "scan/table_numbers.h"
+#include "scan/table_text.h"
 
 namespace lacuna {
 namespace {

@@ -26,6 +26,7 @@
 #include "scan/displacement_table.h"
 #include "scan/pcd_header.h"
 #include "scan/table_numbers.h"
+#include "scan/table_text.h"
 
 namespace lacuna {
 namespace {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
+#include <numbers>
 
 namespace lacuna {
 
@@ -29,7 +30,7 @@ inline double Uniform(uint64_t bits) { return (static_cast<double>(bits >> 12) +
 // A normally distributed number with mean 0 and standard deviation 1 (Box & Muller 1958).
 inline double Normal(uint64_t bits) {
   const double radius = std::sqrt(-2 * std::log(Uniform(bits)));
-  return radius * std::cos(2 * M_PI * Uniform(RandomBits({bits, 1})));
+  return radius * std::cos(2 * std::numbers::pi * Uniform(RandomBits({bits, 1})));
 }
 
 }  // namespace lacuna

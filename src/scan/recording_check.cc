@@ -1,10 +1,10 @@
 #include "scan/recording_check.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "core/first_few.h"
 #include "core/interrupt.h"
 #include "geometry/tri_mesh.h"
 #include "scan/components.h"
@@ -20,14 +20,6 @@ bool AreEqual(const Frame& a, const Frame& b) {
          a.source_row.size() == b.source_row.size() && a.source_row == b.source_row;
 }
 
-// Up to five numbers.
-std::string Listed(const std::vector<int>& frames) {
-  constexpr size_t kShown = 5;
-  const size_t shown = std::min(kShown, frames.size());
-  return fmt::format("{}{}", fmt::join(frames.begin(), frames.begin() + shown, ", "),
-                     shown < frames.size() ? ", …" : "");
-}
-
 void AddRepeats(const std::vector<int>& repeats, int frame_count,
                 std::vector<std::string>* findings) {
   if (repeats.empty()) return;
@@ -36,7 +28,7 @@ void AddRepeats(const std::vector<int>& repeats, int frame_count,
                   "delivered a frame "
                   "twice, or data without noise at rest",
                   repeats.size(), frame_count, repeats.size() == 1 ? "s" : "",
-                  repeats.size() == 1 ? "" : "s", Listed(repeats)));
+                  repeats.size() == 1 ? "" : "s", FirstFew(repeats)));
 }
 
 // Frames much smaller or larger than the first one. Those with far fewer points are left out: they
@@ -59,7 +51,7 @@ class SizeSurvey {
     findings->push_back(fmt::format(
         "frame{} {}: {:.3g} m across where frame 0 is {:.3g} m: another unit of length, "
         "or points far from the object",
-        frames_.size() > 1 ? "s" : "", Listed(frames_), size_, first_size_));
+        frames_.size() > 1 ? "s" : "", FirstFew(frames_), size_, first_size_));
   }
 
  private:
@@ -159,7 +151,7 @@ std::vector<std::string> ExamineFrames(const Recording& recording, int64_t most_
   if (!with_repeated_points.empty()) {
     findings.push_back(
         fmt::format("points that repeat exactly were left out of {} later frames ({})",
-                    with_repeated_points.size(), Listed(with_repeated_points)));
+                    with_repeated_points.size(), FirstFew(with_repeated_points)));
   }
   AddDoubtfulTables(recording, &findings);
   AddRegionsBesideTheShape(recording, &findings);

@@ -74,6 +74,9 @@ void WriteMarkerRecording(const std::filesystem::path& folder, const MarkerRecor
   yaml += fmt::format("schema_version: 1\nname: {}\nlength_unit: m\n", QuotedText(recording.name));
   yaml += WriteDensityAndGravity(recording.object);
   yaml += "frames:\n" + WriteMarkerFrames(folder, recording.times, recording.markers);
+  if (recording.instrument.subset > 0)
+    yaml += fmt::format("instrument: {{subset: {} m, shape: {}}}\n", recording.instrument.subset,
+                        recording.instrument.is_volume ? "volume" : "surface");
   yaml += WriteConstraints(folder, recording.object);
   yaml += fmt::format("reference: {{from: tet_mesh, file: \"{}\"}}\n", reference.generic_string());
   WriteFileAtomically(folder / "recording.yaml", yaml);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scan/instrument.h"
 #include "scan/marker_tracks.h"
 #include "scan/recorded_object.h"
 
@@ -32,7 +33,8 @@ struct MarkerRecording {
   std::string name;
   RecordedObject object;
   std::vector<double> times;  // s, one per frame
-  Markers markers;
+  Markers markers;            // their weights are not written: a file of markers has none
+  Instrument instrument;
   std::filesystem::path reference;  // a file of tetrahedra, m, in the world frame
   std::string comment;              // for people: the first lines of recording.yaml
 };

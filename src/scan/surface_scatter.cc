@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "core/median.h"
@@ -107,7 +108,7 @@ void Examine(const Eigen::Matrix3Xd& points, double share, Offsets* all) {
     all->many[before + k] = OffsetFrom<kMany>(point, near);
     all->few[before + k] = OffsetFrom<kFew>(point, near.leftCols<kFew>());
     // A disc with the k-th neighbour on its edge has the area of about k points.
-    all->spacings[before + k] = hits.distance(kFew, k) * std::sqrt(M_PI / kFew);
+    all->spacings[before + k] = hits.distance(kFew, k) * std::sqrt(std::numbers::pi / kFew);
   });
 }
 

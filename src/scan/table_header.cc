@@ -10,7 +10,9 @@
 
 #include "core/error.h"
 #include "scan/delimited_table.h"
+#include "scan/table_layout.h"
 #include "scan/table_numbers.h"
+#include "scan/table_text.h"
 
 namespace lacuna {
 namespace {

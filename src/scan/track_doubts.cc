@@ -1,7 +1,6 @@
 #include "scan/track_doubts.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/first_few.h"
 #include "core/median.h"
 
 namespace lacuna {
@@ -200,14 +200,6 @@ class TrackExamination {
   Eigen::VectorXd known_of_frame_, known_of_marker_, zeros_of_frame_, zeros_of_marker_;
 };
 
-// "a, b, c, …".
-std::string FirstOf(const std::vector<std::string>& found) {
-  constexpr size_t kShown = 4;
-  const auto shown = static_cast<std::ptrdiff_t>(std::min(kShown, found.size()));
-  return fmt::format("{}{}", fmt::join(found.begin(), found.begin() + shown, ", "),
-                     found.size() > kShown ? fmt::format(", … ({} in all)", found.size()) : "");
-}
-
 }  // namespace
 
 std::vector<std::string> DoubtsOfTracks(const MarkerTracks& tracks,
@@ -217,7 +209,7 @@ std::vector<std::string> DoubtsOfTracks(const MarkerTracks& tracks,
   const TrackExamination examination(tracks);
   const auto add = [&](const char* what, const std::vector<std::string>& found, const char* why) {
     if (!found.empty())
-      doubts.push_back(fmt::format("{}: {} {}: {}", file.string(), what, FirstOf(found), why));
+      doubts.push_back(fmt::format("{}: {} {}: {}", file.string(), what, FirstFew(found), why));
   };
   add("markers are exchanged,", examination.Exchanges(),
       "each is where the other was seen last; exchange their columns there");

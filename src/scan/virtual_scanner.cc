@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -92,7 +93,7 @@ std::vector<VirtualCamera> PlaceCameras(const CameraRing& ring) {
   const Eigen::Vector3d second = up.cross(first);
   std::vector<VirtualCamera> cameras;
   for (int i = 0; i < ring.count; ++i) {
-    const double around = 2 * M_PI * i / ring.count;
+    const double around = 2 * std::numbers::pi * i / ring.count;
     const double elevation = i % 2 == 0 ? ring.elevation : -ring.elevation;
     const Eigen::Vector3d out =
         std::cos(elevation) * (std::cos(around) * first + std::sin(around) * second) +

@@ -27,12 +27,17 @@ class Evaluator {
   const Eigen::VectorXd& lower() const { return lower_; }
   const Eigen::VectorXd& upper() const { return upper_; }
   const Eigen::VectorXd& start() const { return start_; }
+  // The point within the bounds that is nearest to `x` (n).
+  Eigen::VectorXd Within(const Eigen::VectorXd& x) const {
+    return x.cwiseMax(lower_).cwiseMin(upper_);
+  }
 
-  // Returns the outcome at `x` (n), which must lie within the bounds (CHECK). A point is evaluated
-  // once; later requests return the stored outcome. Returns null once the search must stop. The
-  // pointer remains valid during the lifetime of the evaluator. Throws InputError if the log
-  // contains another point in this place or cannot be written, and any exception of the objective.
-  const Evaluation* At(const Eigen::VectorXd& x);
+  // Returns the outcome at `free_x` (n), which must lie within the bounds (CHECK). A point is
+  // evaluated once; later requests return the stored outcome. Returns null once the search must
+  // stop. The pointer remains valid during the lifetime of the evaluator. Throws InputError if the
+  // log contains another point in this place or cannot be written, and any exception of the
+  // objective.
+  const Evaluation* At(const Eigen::VectorXd& free_x);
 
   // ∂f/∂x (n) for the free variables at an `x` (n) whose outcome has a value; NaN if the problem
   // does not provide the derivative.

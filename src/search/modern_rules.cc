@@ -15,6 +15,7 @@ constexpr double kShortStep = 0.1;  // a step below this multiple of the resolut
 constexpr double kPoorRatio = 0.1;  // actual over predicted reduction below which Δ shrinks
 constexpr double kGoodRatio = 0.7;  // the same ratio above which Δ may grow
 constexpr double kSnap = 1.5;       // Δ below this multiple of the resolution is set equal to it
+constexpr double kGeometryStep = 0.5;  // length of a geometry step as a multiple of Δ
 constexpr double kLongEdge = 2;  // a vertex farther from the pole than this multiple of Δ is moved
 
 // The next resolution: a tenth of the present one while it is far from the final radius, and then
@@ -45,7 +46,10 @@ class ModernDescent {
       if (!is_poor) continue;
       if (!is_spread) {
         if (!simplex_.MovePole(penalty_)) return SearchStatus::kRounding;
-        if (!IsSpread() && MoveVertex()) continue;
+        if (!IsSpread() && simplex_.ReplaceByGeometryPoint(FarthestVertex(), kGeometryStep * delta_,
+                                                           penalty_, &evaluator_)) {
+          continue;
+        }
         if (evaluator_.stopped()) return SearchStatus::kEvaluations;
       }
       if (std::max(delta_, last_length_) > rho_) continue;
@@ -104,7 +108,7 @@ class ModernDescent {
       SetDelta(0.1 * delta_);
       return false;
     }
-    const VectorXd x = WithinBounds(pole + trial_.step);
+    const VectorXd x = evaluator_.Within(pole + trial_.step);
     const Evaluation* outcome = evaluator_.At(x);
     if (outcome == nullptr) return false;
     if (!outcome->value) {
@@ -125,10 +129,6 @@ class ModernDescent {
     if (dropped < 0) return false;
     simplex_.Replace(dropped, x, *outcome);
     return ratio > 0;
-  }
-
-  VectorXd WithinBounds(const VectorXd& x) const {
-    return x.cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper());
   }
 
   void SetDelta(double delta) { delta_ = delta <= kSnap * rho_ ? rho_ : delta; }
@@ -154,30 +154,19 @@ class ModernDescent {
     return dropped;
   }
 
-  bool MoveVertex() {
-    int moved = 0;
+  int FarthestVertex() const {
+    int farthest = 0;
     for (int j = 1; j < simplex_.n(); ++j) {
-      if (ClearlyGreater(simplex_.EdgeLength(j), simplex_.EdgeLength(moved))) moved = j;
+      if (ClearlyGreater(simplex_.EdgeLength(j), simplex_.EdgeLength(farthest))) farthest = j;
     }
-    const VectorXd pole = simplex_.Vertex(simplex_.pole());
-    const VectorXd target = simplex_.GeometryPoint(moved, 0.5 * delta_, penalty_, evaluator_);
-    for (const double factor : {1.0, -1.0, 0.5}) {
-      const VectorXd x = WithinBounds(pole + factor * (target - pole));
-      if (x == pole || x == simplex_.Vertex(moved)) continue;
-      const Evaluation* outcome = evaluator_.At(x);
-      if (outcome == nullptr) return false;
-      if (!outcome->value) continue;
-      simplex_.Replace(moved, x, *outcome);
-      return true;
-    }
-    return false;
+    return farthest;
   }
 
   // Evaluates the last step that was too short to be tried, since it may still be the best point.
   void TakeLastStep() {
     if (!is_short_ || last_length_ <= 1e-3 * rho_) return;
     const VectorXd pole = simplex_.Vertex(simplex_.pole());
-    evaluator_.At(WithinBounds(pole + trial_.step));
+    evaluator_.At(evaluator_.Within(pole + trial_.step));
   }
 
   const Descent& descent_;

@@ -107,9 +107,11 @@ class PowellDescent {
       const bool acceptable = IsAcceptable(simplex_, rho_);
       if (wants_geometry && !acceptable) {
         wants_geometry = false;
-        const Outcome outcome = MoveVertex();
-        if (outcome == Outcome::kStopped) return SearchStatus::kEvaluations;
-        if (outcome == Outcome::kGood) continue;
+        if (simplex_.ReplaceByGeometryPoint(VertexToMove(simplex_, rho_), kGamma * rho_, penalty_,
+                                            &evaluator_)) {
+          continue;
+        }
+        if (evaluator_.stopped()) return SearchStatus::kEvaluations;
         if (!Shrink()) return Converged();  // the geometry cannot be improved
         continue;
       }
@@ -127,24 +129,6 @@ class PowellDescent {
   }
 
  private:
-  // Evaluates a geometry step and replaces a vertex by it. Returns kPoor if the bounds permit no
-  // such step or if all three evaluations fail.
-  Outcome MoveVertex() {
-    const int moved = VertexToMove(simplex_, rho_);
-    const VectorXd pole = simplex_.Vertex(simplex_.pole());
-    const VectorXd target = simplex_.GeometryPoint(moved, kGamma * rho_, penalty_, evaluator_);
-    for (const double factor : {1.0, -1.0, 0.5}) {
-      const VectorXd x = WithinBounds(pole + factor * (target - pole));
-      if (x == pole || x == simplex_.Vertex(moved)) continue;
-      const Evaluation* outcome = evaluator_.At(x);
-      if (outcome == nullptr) return Outcome::kStopped;
-      if (!outcome->value) continue;
-      simplex_.Replace(moved, x, *outcome);
-      return Outcome::kGood;
-    }
-    return Outcome::kPoor;
-  }
-
   Outcome TryStep() {
     const LinearInterpolant& model = simplex_.model();
     const VectorXd pole = simplex_.Vertex(simplex_.pole());
@@ -152,13 +136,13 @@ class PowellDescent {
         SolveTrustRegion(model, evaluator_.lower() - pole, evaluator_.upper() - pole, rho_);
     short_trial_.reset();
     if (!trial.on_boundary && ClearlyGreater(0.5 * rho_, OrderedNorm(trial.step))) {
-      short_trial_ = WithinBounds(pole + trial.step);
+      short_trial_ = evaluator_.Within(pole + trial.step);
       return Outcome::kShort;
     }
     const Prediction predicted = Predict(model, trial.step);
     if (RaisePenalty(predicted)) return Outcome::kPenaltyRaised;
 
-    const VectorXd x = WithinBounds(pole + trial.step);
+    const VectorXd x = evaluator_.Within(pole + trial.step);
     const Evaluation* outcome = evaluator_.At(x);
     if (outcome == nullptr) return Outcome::kStopped;
     if (!outcome->value) return Outcome::kPoor;
@@ -194,10 +178,6 @@ class PowellDescent {
       }
     }
     return false;
-  }
-
-  VectorXd WithinBounds(const VectorXd& x) const {
-    return x.cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper());
   }
 
   // If the best vertex is infeasible, evaluates the last step that was too short to be tried,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "search/ordered_algebra.h"
 
@@ -22,10 +23,6 @@ double AxisStep(const VectorXd& x, int i, double wanted, const Evaluator& evalua
   return above >= below ? above : -below;
 }
 
-VectorXd Within(const VectorXd& x, const Evaluator& evaluator) {
-  return x.cwiseMax(evaluator.lower()).cwiseMin(evaluator.upper());
-}
-
 // The start, or, if its evaluation fails, the first neighbour whose evaluation succeeds. Neighbours
 // are tried on both sides along each axis, at distances of up to one and a half radii.
 std::optional<VectorXd> FirstSuccess(const VectorXd& start, double radius, Evaluator* evaluator) {
@@ -34,7 +31,7 @@ std::optional<VectorXd> FirstSuccess(const VectorXd& start, double radius, Evalu
   for (const double factor : {1.0, -1.0, 0.5, -0.5, 1.5, -1.5}) {
     for (int i = 0; i < start.size(); ++i) {
       const VectorXd x =
-          Within(start + factor * radius * VectorXd::Unit(start.size(), i), *evaluator);
+          evaluator->Within(start + factor * radius * VectorXd::Unit(start.size(), i));
       outcome = evaluator->At(x);
       if (outcome == nullptr) return std::nullopt;
       if (outcome->value) return x;
@@ -57,13 +54,14 @@ std::optional<Simplex> Simplex::Around(const VectorXd& start, double step, Evalu
   simplex.Replace(n, *first, *evaluator->At(*first));
   double worst = simplex.values_[n];
   double best = worst;
+  std::vector<int> failed;  // vertices without an evaluation that succeeded
   for (int j = 0; j < n; ++j) {
     const VectorXd base = simplex.Vertex(n);
     const double along = AxisStep(base, j, step, *evaluator);
     const Evaluation* outcome = nullptr;
     VectorXd x;  // the neighbour that was tried last
     for (const double factor : {1.0, -1.0, 0.5, -0.5}) {
-      const VectorXd neighbour = Within(base + factor * along * VectorXd::Unit(n, j), *evaluator);
+      const VectorXd neighbour = evaluator->Within(base + factor * along * VectorXd::Unit(n, j));
       if (neighbour == base) continue;
       x = neighbour;
       outcome = evaluator->At(x);
@@ -81,10 +79,14 @@ std::optional<Simplex> Simplex::Around(const VectorXd& start, double step, Evalu
         simplex.Replace(j, base, base_outcome);
       }
     } else {
-      const double stand_in = worst + (worst - best) + 1e-3 * std::abs(worst);
-      simplex.Replace(j, x, {stand_in, simplex.Constraints(n), ""});
+      failed.push_back(j);
+      simplex.vertices_.col(j) = x;
     }
   }
+  // Only now are all values known.
+  const double stand_in = worst + (worst - best) + 1e-3 * std::abs(worst);
+  for (const int j : failed)
+    simplex.Replace(j, simplex.Vertex(j), {stand_in, simplex.Constraints(n), ""});
   return simplex;
 }
 
@@ -148,12 +150,27 @@ VectorXd Simplex::GeometryPoint(int j, double length, double penalty,
   const double ahead = slope + penalty * Violation(model_.constraints + change);
   const double behind = -slope + penalty * Violation(model_.constraints - change);
   const double side = ahead > behind ? -1 : 1;
-  const VectorXd preferred = Within(vertices_.col(n()) + side * step, evaluator);
-  const VectorXd other = Within(vertices_.col(n()) - side * step, evaluator);
+  const VectorXd preferred = evaluator.Within(vertices_.col(n()) + side * step);
+  const VectorXd other = evaluator.Within(vertices_.col(n()) - side * step);
   const auto height = [&](const VectorXd& x) {
     return std::abs(Lagrange(j, x - vertices_.col(n()))) * face_distances_[j];
   };
   return height(preferred) < 0.5 * length && height(other) > height(preferred) ? other : preferred;
+}
+
+bool Simplex::ReplaceByGeometryPoint(int j, double length, double penalty, Evaluator* evaluator) {
+  const VectorXd pole = Vertex(n());
+  const VectorXd step = GeometryPoint(j, length, penalty, *evaluator) - pole;
+  for (const double factor : {1.0, -1.0, 0.5}) {
+    const VectorXd x = evaluator->Within(pole + factor * step);
+    if (x == pole || x == Vertex(j)) continue;
+    const Evaluation* outcome = evaluator->At(x);
+    if (outcome == nullptr) return false;
+    if (!outcome->value) continue;
+    Replace(j, x, *outcome);
+    return true;
+  }
+  return false;
 }
 
 double Simplex::PenaltyLimit() const {

@@ -52,12 +52,13 @@ class Simplex {
   // Replaces vertex j, which may be the pole, by an evaluated point.
   void Replace(int j, const Eigen::VectorXd& x, const Evaluation& outcome);
 
-  // The point at the distance `length` from the pole along the normal of the face opposite to
-  // vertex j, on the side with the better predicted merit, or on the other side if the bounds would
-  // shorten the step to less than half and the other step is longer. Equal to the pole if the
-  // bounds permit no step.
-  Eigen::VectorXd GeometryPoint(int j, double length, double penalty,
-                                const Evaluator& evaluator) const;
+  // A geometry step: replaces vertex j < n by an evaluated point at about the distance `length`
+  // from the pole along the normal of the face opposite to it, on the side with the better
+  // predicted merit, or on the other side if the bounds would shorten the step to less than half
+  // and the other step is longer. Where the evaluation fails, the opposite step and then half the
+  // step are tried. Returns false, and leaves the vertex as it is, if the bounds permit no such
+  // step, if all evaluations fail, or if the search must stop (Evaluator::stopped()).
+  bool ReplaceByGeometryPoint(int j, double length, double penalty, Evaluator* evaluator);
 
   // An upper limit on a useful penalty (Powell 1994, eq. 12 and 13): the range of f over the
   // vertices, divided by the least range of a constraint among those that are violated, or nearly
@@ -67,6 +68,10 @@ class Simplex {
  private:
   Simplex(int n, int m);
   bool Refresh();
+  // The first point that ReplaceByGeometryPoint() tries. Equal to the pole if the bounds permit no
+  // step.
+  Eigen::VectorXd GeometryPoint(int j, double length, double penalty,
+                                const Evaluator& evaluator) const;
 
   Eigen::MatrixXd vertices_;  // n × (n+1), the pole last
   Eigen::VectorXd values_, violations_;

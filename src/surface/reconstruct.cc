@@ -50,42 +50,6 @@ void RefuseTooManyTriangles(const TriMesh& surface, double edge_length) {
       edge_length, area, triangles, kMost));
 }
 
-// Removes the triangles with a vertex farther than `distance` from all points.
-TriMesh TrimToPoints(const TriMesh& mesh, const Eigen::Matrix3Xd& points, double distance) {
-  const Eigen::VectorXd gap = PointSearch(points).Nearest(mesh.vertices).distance.row(0);
-  std::vector<int> kept;
-  for (int t = 0; t < mesh.triangles.cols(); ++t) {
-    if (gap(mesh.triangles.col(t)).maxCoeff() <= distance) kept.push_back(t);
-  }
-  return {mesh.vertices, mesh.triangles(Eigen::all, kept)};
-}
-
-RepairOptions RepairFor(const SurfaceOptions& options, double spacing) {
-  RepairOptions repair;
-  if (!options.closed) {
-    repair.keep_longest_boundary = true;
-    repair.max_hole_perimeter =
-        options.max_hole_perimeter > 0 ? options.max_hole_perimeter : 20 * spacing;
-  }
-  return repair;
-}
-
-void Append(std::vector<std::string>& notes, const std::vector<std::string>& more) {
-  notes.insert(notes.end(), more.begin(), more.end());
-}
-
-// Sets the status and the message of the result according to its report.
-void Conclude(const SurfaceOptions& options, Surface& surface) {
-  SurfaceReport judged = surface.report;
-  if (!options.closed) {
-    judged.boundary_loops.clear();
-    judged.inside_out_components.clear();
-    judged.flat_components.clear();
-  }
-  surface.message = DescribeFaults(judged);
-  surface.status = surface.message.empty() ? SurfaceStatus::kUsable : SurfaceStatus::kFaulty;
-}
-
 }  // namespace
 
 double TypicalSpacing(const Eigen::Matrix3Xd& points) {
@@ -103,14 +67,9 @@ Surface ReconstructSurface(const PointCloud& oriented, const SurfaceOptions& opt
   surface.depth = options.depth > 0 ? std::clamp(options.depth, kMinDepth, kMaxDepth)
                                     : DepthForSpacing(oriented, surface.spacing);
 
-  TriMesh mesh =
+  const TriMesh mesh =
       PoissonIsoSurface(oriented, {surface.depth, options.samples_per_node, options.point_weight});
-  if (!options.closed && mesh.triangles.cols() > 0) {
-    const double trim = options.trim_distance > 0 ? options.trim_distance : 3 * surface.spacing;
-    mesh = TrimToPoints(mesh, oriented.points, trim);
-  }
-  const RepairOptions repair = RepairFor(options, surface.spacing);
-  RepairedSurface repaired = RepairSurface(mesh, repair);
+  RepairedSurface repaired = RepairSurface(mesh);
   surface.notes = std::move(repaired.notes);
   if (repaired.mesh.triangles.cols() == 0) {
     surface.status = SurfaceStatus::kEmpty;
@@ -118,18 +77,14 @@ Surface ReconstructSurface(const PointCloud& oriented, const SurfaceOptions& opt
         "Poisson reconstruction found no surface; check that the normals point outward everywhere";
     return surface;
   }
-  if (options.remesh_iterations > 0) {
-    const double edge = options.edge_length > 0 ? options.edge_length : 2 * surface.spacing;
-    RefuseTooManyTriangles(repaired.mesh, edge);
-    repaired = RepairSurface(
-        RemeshIsotropic(repaired.mesh,
-                        {.edge_length = edge, .iterations = options.remesh_iterations}),
-        repair);
-    Append(surface.notes, repaired.notes);
-  }
+  const double edge = options.edge_length > 0 ? options.edge_length : 2 * surface.spacing;
+  RefuseTooManyTriangles(repaired.mesh, edge);
+  repaired = RepairSurface(RemeshIsotropic(repaired.mesh, edge));
+  surface.notes.insert(surface.notes.end(), repaired.notes.begin(), repaired.notes.end());
   surface.mesh = std::move(repaired.mesh);
   surface.report = CheckSurface(surface.mesh);
-  Conclude(options, surface);
+  surface.message = DescribeFaults(surface.report);
+  surface.status = surface.message.empty() ? SurfaceStatus::kUsable : SurfaceStatus::kFaulty;
   return surface;
 }
 

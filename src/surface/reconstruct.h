@@ -13,9 +13,6 @@
 namespace lacuna {
 
 struct SurfaceOptions {
-  // True for a closed surface around all points, false for an open surface that ends where the
-  // points end.
-  bool closed = true;
   // Levels of the Poisson octree, 3..12. For 0 the finest cells get a width between half the point
   // spacing and the spacing. Each further level resolves finer detail, and more of the noise, in
   // four times the time.
@@ -28,14 +25,6 @@ struct SurfaceOptions {
   // Edge length of the result, m; 0 means twice the point spacing. Raising it makes all later
   // stages faster and smooths out detail.
   double edge_length = 0;
-  // Passes of isotropic remeshing. Raising it makes the triangles more uniform; 0 keeps the
-  // triangles of the iso-surface.
-  int remesh_iterations = 4;
-  // An open surface ends at this distance from the nearest point, m; 0 means three times the
-  // spacing. Raising it bridges wider gaps but adds a wider fringe.
-  double trim_distance = 0;
-  // Holes of an open surface are filled up to this perimeter, m; 0 means 20 times the spacing.
-  double max_hole_perimeter = 0;
 };
 
 enum class SurfaceStatus {
@@ -57,13 +46,12 @@ struct Surface {
   bool IsUsable() const { return status == SurfaceStatus::kUsable; }
 };
 
-// Reconstructs the surface through points with outward normals: the iso-surface of the screened
-// Poisson equation (surface/poisson.h) is reduced to its largest component, repaired
-// (surface/repair.h) and remeshed isotropically. A usable closed result bounds a volume; a usable
-// open one is manifold, oriented and free of self-intersections. The same points give the same
-// surface to the last bit. Throws InputError for fewer than 10 points, points without normals,
-// values that are not finite, points most or all of which coincide, and an edge length that would
-// give more than four million triangles.
+// Reconstructs the closed surface around points with outward normals: the iso-surface of the
+// screened Poisson equation (surface/poisson.h) is reduced to its largest component, repaired
+// (surface/repair.h) and remeshed isotropically. A usable result bounds a volume. The same points
+// give the same surface to the last bit. Throws InputError for fewer than 10 points, points without
+// normals, values that are not finite, points most or all of which coincide, and an edge length
+// that would give more than four million triangles.
 Surface ReconstructSurface(const PointCloud& oriented, const SurfaceOptions& options);
 
 // The distance, m, between neighbours if the points were spread evenly over the same surface: the

@@ -1,10 +1,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/detect_features.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
 #include <CGAL/Surface_mesh.h>
 #include <glog/logging.h>
-
-#include <numbers>
 
 #include "core/error.h"
 #include "geometry/surface_check.h"
@@ -31,20 +28,14 @@ void RefuseUnlessManifold(const TriMesh& mesh) {
 
 }  // namespace
 
-TriMesh RemeshIsotropic(const TriMesh& mesh, const RemeshOptions& options) {
-  CHECK_GT(options.edge_length, 0);
+TriMesh RemeshIsotropic(const TriMesh& mesh, double edge_length) {
+  constexpr int kPasses = 4;  // more: more uniform triangles, in proportionally more time
+  CHECK_GT(edge_length, 0);
   RefuseUnlessManifold(mesh);
   SurfaceMesh surface = ToSurfaceMesh<SurfaceMesh>(mesh);
-  auto is_sharp =
-      surface.add_property_map<SurfaceMesh::Edge_index, bool>("e:is_sharp", false).first;
-  if (options.feature_angle < std::numbers::pi) {
-    processing::detect_sharp_edges(surface, options.feature_angle * 180 / std::numbers::pi,
-                                   is_sharp);
-  }
-  processing::isotropic_remeshing(surface.faces(), options.edge_length, surface,
-                                  CGAL::parameters::number_of_iterations(options.iterations)
-                                      .number_of_relaxation_steps(3)
-                                      .edge_is_constrained_map(is_sharp));
+  processing::isotropic_remeshing(
+      surface.faces(), edge_length, surface,
+      CGAL::parameters::number_of_iterations(kPasses).number_of_relaxation_steps(3));
   surface.collect_garbage();
   return FromSurfaceMesh(surface);
 }

@@ -108,11 +108,8 @@ std::vector<Hole> Holes(const SurfaceMesh& surface) {
   return holes;
 }
 
-void FillHoles(SurfaceMesh& surface, const RepairOptions& options, Notes& notes) {
-  std::vector<Hole> holes = Holes(surface);
-  if (options.keep_longest_boundary && !holes.empty()) holes.erase(holes.begin());
-  for (const Hole& hole : holes) {
-    if (hole.perimeter > options.max_hole_perimeter) continue;
+void FillHoles(SurfaceMesh& surface, Notes& notes) {
+  for (const Hole& hole : Holes(surface)) {
     std::vector<SurfaceMesh::Face_index> patch;
     std::vector<SurfaceMesh::Vertex_index> patch_vertices;
     const Point place = surface.point(surface.target(hole.border));
@@ -154,13 +151,13 @@ void OrientOutward(SurfaceMesh& surface, Notes& notes) {
 
 }  // namespace
 
-RepairedSurface RepairSurface(const TriMesh& mesh, const RepairOptions& options) {
+RepairedSurface RepairSurface(const TriMesh& mesh) {
   RepairedSurface repaired;
   SurfaceMesh surface = MeshFromSoup(mesh, repaired.notes);
-  if (options.keep_largest_component) KeepLargestComponent(surface, repaired.notes);
-  if (options.remove_slivers) RemoveSlivers(surface, repaired.notes);
-  FillHoles(surface, options, repaired.notes);
-  if (options.remove_self_intersections) RemoveSelfIntersections(surface, repaired.notes);
+  KeepLargestComponent(surface, repaired.notes);
+  RemoveSlivers(surface, repaired.notes);
+  FillHoles(surface, repaired.notes);
+  RemoveSelfIntersections(surface, repaired.notes);
   OrientOutward(surface, repaired.notes);
   surface.collect_garbage();
   repaired.mesh = FromSurfaceMesh(surface);

@@ -110,7 +110,7 @@ CaseOutcome Table1(const SweepSettings& settings, const std::filesystem::path& f
 CaseOutcome OutcomeOf(const RunRecord& record) {
   CaseOutcome outcome;
   outcome.done = record.IsUsable();
-  int unusable = 0;
+  int unusable = record.frames_not_tried;
   for (const FrameRecord& frame : record.frames) {
     if (frame.solver.usable) continue;
     ++unusable;
@@ -130,7 +130,7 @@ CaseOutcome OutcomeOf(const RunRecord& record) {
                      take("surface_distance_mean_m"),
                      {"nodes", static_cast<double>(record.mesh.node_count)},
                      {"tetrahedra", static_cast<double>(record.mesh.tet_count)},
-                     {"frames", static_cast<double>(record.frames.size())},
+                     {"frames", static_cast<double>(record.FrameCount())},
                      {"frames_unusable", unusable}};
   for (const auto& [name, value] : measures) outcome.numbers.emplace_back(name, value);
   return outcome;

@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kLockName[] = ".planning";
+constexpr char kExperiments[] = "experiments";  // of Table 1, in the folder of a case
 
 // The keys of an experiment whose values are paths, relative to the file that contains them.
 const std::set<std::string>& PathKeys() {
@@ -45,7 +46,7 @@ std::map<std::string, fs::path> FilesOf(SweepCommand command, const fs::path& ex
   std::map<std::string, fs::path> files;
   for (const auto& entry : fs::directory_iterator(experiment))
     if (entry.path().extension() == ".yaml")
-      files["experiments/" + entry.path().filename().string()] = entry.path();
+      files[kExperiments + ("/" + entry.path().filename().string())] = entry.path();
   if (files.empty()) throw InputError({experiment.string()}, "contains no .yaml file");
   return files;
 }
@@ -64,6 +65,19 @@ CaseFiles Compose(SweepCommand command, const SweepCase& entry, const RequestedC
                      ChangedYaml(source, changes, PathKeys(), target.parent_path());
   }
   return composed;
+}
+
+// The planned case in `folder` must have these files and, of a folder of experiments, no other.
+void RequireSameFiles(SweepCommand command, const CaseFiles& files, const fs::path& folder) {
+  const auto refuse = [](const char* how, const fs::path& planned) {
+    throw InputError(fmt::format("{} {}, which was planned before; plan into another folder", how,
+                                 planned.string()));
+  };
+  for (const auto& [name, text] : files)
+    if (ReadWholeFile(folder / name) != text) refuse("differs from", folder / name);
+  if (command != SweepCommand::kTable1) return;
+  for (const auto& [name, planned] : FilesOf(command, folder / kExperiments))
+    if (!files.contains(name)) refuse("no longer contains the file of", planned);
 }
 
 // The part of a message that concerns this field, or a mapping around it that had to be added:
@@ -157,11 +171,7 @@ Additions CheckedAdditions(const Config& sweep_file, const SweepFile& file,
         additions.added.emplace_back(entry, files);
         continue;
       }
-      for (const auto& [name, text] : files)
-        if (ReadWholeFile(folder / entry.name / name) != text)
-          throw InputError(
-              fmt::format("differs from {}, which was planned before; plan into another folder",
-                          (folder / entry.name / name).string()));
+      RequireSameFiles(command, files, folder / entry.name);
     } catch (const InputError& problem) {
       Refuse(request, entry, sweep_file, problem.what());
     }

@@ -38,13 +38,14 @@ constexpr char kFollowUpFolder[] = "follow_up", kFollowUpFile[] = "follow_up/fol
 struct PlannedCase {
   TrialCase trial;
   FittedRun fitted;
-  double time_step = 0;  // s, of the diagnosis
+  DecisionInput decision;
+  DiagnosisRecord diagnosis;  // that the case keeps, decided with the rules as they are now
   std::vector<Protocol> protocols;
   PlanRecord plan;
 };
 
-// From the diagnosis that the case keeps, with the rules as they are now.
-PlannedCase Plan(const fs::path& own) {
+// Without the plan.
+PlannedCase FitAgain(const fs::path& own) {
   Progress progress({.style = ProgressStyle::kSilent});
   PlannedCase planned;
   planned.trial = LoadCase(own);
@@ -52,13 +53,21 @@ PlannedCase Plan(const fs::path& own) {
   study.output = own / kFollowUpFolder / "fit";
   RunCalibration(study, &progress);
   planned.fitted = OpenRun(study.output);
-  const DecisionInput decision = LoadDecisionInput(own / kDecisionFolder);
-  DiagnosisRecord diagnosis = ReadDiagnosisFile(own / kDiagnosisFile);
-  diagnosis.decision = Decide(decision).record;
-  planned.time_step = diagnosis.time_step;
+  planned.decision = LoadDecisionInput(own / kDecisionFolder);
+  planned.diagnosis = ReadDiagnosisFile(own / kDiagnosisFile);
+  planned.diagnosis.decision = Decide(planned.decision).record;
   planned.protocols = StockProtocols(planned.fitted.study, planned.fitted.mesh);
-  planned.plan = MakePlan({planned.fitted, diagnosis, decision}, planned.protocols, &progress);
   return planned;
+}
+
+// Throws InputError where there is no plan, or none of its recordings can be played.
+PlanRecord PlanOf(const PlannedCase& planned) {
+  Progress progress({.style = ProgressStyle::kSilent});
+  PlanRecord plan =
+      MakePlan({planned.fitted, planned.diagnosis, planned.decision}, planned.protocols, &progress);
+  if (!plan.outcomes.front().IsPlayable())
+    throw InputError("no recording of the plan can be played");
+  return plan;
 }
 
 // Another recording of the plan that lasts as long as the best one. Throws InputError where there
@@ -106,7 +115,7 @@ FollowUp Follow(const PlannedCase& planned, const PlannedOutcome& outcome, int n
   const PlannedRecording recording = PlanRecording(protocol, study, planned.fitted.mesh);
   const TrueRecording seen = RecordTruth(planned.trial, protocol, recording,
                                          planned.trial.hold_forces.at(changed), number);
-  WritePlannedExperiment(planned.fitted, planned.time_step, protocol, folder);
+  WritePlannedExperiment(planned.fitted, planned.diagnosis.time_step, protocol, folder);
   // As docs/plan.md tells the user: what was measured replaces what was predicted.
   fs::remove_all(folder / "measured");
   fs::copy(folder / "predicted", folder / "measured");
@@ -133,16 +142,28 @@ std::optional<FollowUp> FromJson(const nlohmann::json& json, const fs::path& fol
   return made;
 }
 
+// Throws InputError for what is not a result: files that are absent or of another version, and fits
+// that fail.
 CaseFollowUps MakeFollowUps(const fs::path& own) {
   const fs::path best = FollowUpFolders(own)[0], random = FollowUpFolders(own)[1];
   CaseFollowUps made;
+  PlannedCase planned = FitAgain(own);
+  const PlannedOutcome* other = nullptr;
   try {
-    const PlannedCase planned = Plan(own);
-    if (!planned.plan.outcomes.front().IsPlayable())
-      throw InputError("no recording of the plan can be played");
-    made.best = Follow(planned, planned.plan.outcomes.front(), kBestNumber, own, best);
-    made.random = Follow(planned, ChooseAtRandom(planned), kRandomNumber, own, random);
+    planned.plan = PlanOf(planned);
   } catch (const InputError& problem) {
+    made.message = problem.what();
+    return made;
+  }
+  try {
+    other = &ChooseAtRandom(planned);
+  } catch (const InputError& problem) {
+    made.message = problem.what();
+  }
+  try {
+    made.best = Follow(planned, planned.plan.outcomes.front(), kBestNumber, own, best);
+    if (other != nullptr) made.random = Follow(planned, *other, kRandomNumber, own, random);
+  } catch (const SimulationFailure& problem) {
     made.message = problem.what();
   }
   return made;

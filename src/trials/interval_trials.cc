@@ -18,6 +18,7 @@
 #include "core/json_file.h"
 #include "core/progress.h"
 #include "effects/catalogue.h"
+#include "effects/gravity.h"
 #include "effects/neo_hookean.h"
 #include "effects/stiffness_damping.h"
 #include "fit/calibration.h"
@@ -71,6 +72,20 @@ TrialPrior ReadTrialPrior(const Config& item, const IntervalSuite& suite) {
 bool HasPrior(const IntervalSuite& suite, const std::string& name) {
   return std::any_of(suite.priors.begin(), suite.priors.end(),
                      [&](const TrialPrior& prior) { return prior.name == name; });
+}
+
+// An effect has one place in the truth.
+void RequireDistinctEffects(const Config& config, const IntervalSuite& suite) {
+  for (size_t k = 0; k < suite.modelled.size(); ++k)
+    for (const EffectCard* card : {&StiffnessDampingCard(), &GravityCard()})
+      if (suite.modelled[k] == card->type)
+        config.FailAtItem("modelled", k,
+                          fmt::format("\"{}\" is part of every model: leave it out", card->type));
+  for (size_t k = 0; k < suite.missing.size(); ++k)
+    if (std::count(suite.modelled.begin(), suite.modelled.end(), suite.missing[k]) > 0)
+      config.FailAtItem(
+          "missing", k,
+          fmt::format("\"{}\" is among the effects that the model has", suite.missing[k]));
 }
 
 // The first of the draws from the prior that lies within its bounds. `number` is that of the prior
@@ -185,8 +200,12 @@ IntervalSuite ReadIntervalSuite(const Config& config) {
   suite.noise = config.Quantity("noise", kLength, kPositive, suite.noise);
   suite.modelled = ReadEffectTypes(config, "modelled");
   suite.missing = ReadEffectTypes(config, "missing");
-  for (const Config& item : config.Items("priors"))
-    suite.priors.push_back(ReadTrialPrior(item, suite));
+  RequireDistinctEffects(config, suite);
+  for (const Config& item : config.Items("priors")) {
+    TrialPrior prior = ReadTrialPrior(item, suite);
+    if (HasPrior(suite, prior.name)) item.Fail("name", "is listed twice");
+    suite.priors.push_back(std::move(prior));
+  }
   for (const auto& [key, types] :
        {std::pair{"modelled", &suite.modelled}, std::pair{"missing", &suite.missing}})
     for (const std::string& type : *types) {

@@ -25,13 +25,70 @@ constexpr std::pair<TrialGroup, const char*> kGroups[] = {
     {TrialGroup::kOneEffect, "one_effect"}, {TrialGroup::kPair, "pair"},
     {TrialGroup::kRemoved, "removed"},      {TrialGroup::kIntervals, "intervals"}};
 
+struct DrawnRange {
+  double low, high;
+};
+
+// The objects and recordings from which cases are drawn: bars of soft rubber of the size of a
+// finger, filmed at 100 frames per second. With another value the cases of all seeds are others, so
+// that their diagnosis cannot be compared with earlier ones.
+//
+// Young's modulus, Pa, uniform in its logarithm: soft silicone rubbers.
+constexpr DrawnRange kYoungModulus{6e4, 2e5};
+// Poisson's ratio: nearly incompressible, but below the values at which linear tetrahedra lock.
+constexpr DrawnRange kPoissonRatio{0.38, 0.46};
+// Length and the two sides of the cross section, m: slender enough to bend far, thick enough for
+// three-dimensional stresses.
+constexpr DrawnRange kBarLength{0.07, 0.09}, kBarSide{0.016, 0.022};
+// The largest error of each dimension of the model, relative: 0.16 mm of the length, as of a
+// measurement with a calliper.
+constexpr double kSizeError = 0.002;
+// Length of the bar per deflection of its end by the hand: far enough that rotations matter.
+constexpr double kLengthPerDeflection = 6;
+// The force of the hand, relative to that which causes this deflection of a beam of Euler and
+// Bernoulli.
+constexpr DrawnRange kHoldForce{0.8, 1.2};
+// The axial component of the force's direction is multiplied by this, since the bar is stiff along
+// its axis: a force along it would hardly move it.
+constexpr double kAxialShare = 0.3;
+// The share of the first force's direction that is removed from that of the second one, so that
+// they are not parallel. 1 would make them perpendicular.
+constexpr double kRemovedParallelShare = 0.8;
+// The time over which the noise of a marker is correlated, as a multiple of the time between
+// frames.
+constexpr DrawnRange kNoiseCorrelation{0.5, 1.5};
+// The noise along the ray of a depth camera, m: four times that of a marker's coordinate.
+constexpr double kTrialScanNoise = 4e-4;
+// Stiffness-proportional damping, s, uniform in its logarithm.
+constexpr DrawnRange kTrialDamping{3e-4, 1e-3};
+
+// A load cell's noise, N, uniform in its logarithm, and the deviations of its offset, N, and of its
+// delay, s. The bar weighs about 0.3 N, and the hand pulls with 0.1 N.
+constexpr DrawnRange kLoadCellNoise{0.002, 0.02};
+constexpr double kTareDeviation = 0.05;
+constexpr double kDelayDeviation = 0.002;
+
+// The place of a local effect along the bar, in lengths of the bar: not at the clamp, where it
+// would have no influence on the motion.
+constexpr DrawnRange kEffectPlace{0.25, 0.95};
+// The distance of a contact plane from the bar at rest, in lengths of the bar. The bar's end swings
+// by a sixth of the length, and so reaches the plane.
+constexpr DrawnRange kPlaneGap{0.02, 0.08};
+// Stiffness of a contact plane per Young's modulus, 1/m: stiff enough that the bar penetrates it by
+// a small part of its thickness.
+constexpr double kPlaneStiffness = 3e3;
+
 // A stream of random numbers. Draw number n depends on the seed, the stream and n alone.
 class Draws {
  public:
   Draws(uint64_t seed, uint64_t stream) : seed_(seed), stream_(stream) {}
   void SkipTo(uint64_t number) { count_ = number; }
-  double Between(double low, double high) { return low + (high - low) * Uniform(Next()); }
-  double LogBetween(double low, double high) { return low * std::pow(high / low, Uniform(Next())); }
+  double In(const DrawnRange& range) {
+    return range.low + (range.high - range.low) * Uniform(Next());
+  }
+  double LogIn(const DrawnRange& range) {
+    return range.low * std::pow(range.high / range.low, Uniform(Next()));
+  }
   double Sign() { return Next() % 2 == 0 ? 1 : -1; }
   Eigen::Vector3d Direction() {
     const Eigen::Vector3d v(Normal(Next()), Normal(Next()), Normal(Next()));
@@ -63,8 +120,8 @@ void DrawSetting(const ParameterCard& parameter, const TrialCase& trial, uint64_
   if (!setting.IsDrawn()) return;
   Draws draws(seed, kHiddenStream);
   draws.SkipTo(static_cast<uint64_t>(setting.draw));
-  (*drawn)[parameter.name] = parameter.log_scale ? draws.LogBetween(setting.min, setting.max)
-                                                 : draws.Between(setting.min, setting.max);
+  (*drawn)[parameter.name] = parameter.log_scale ? draws.LogIn({setting.min, setting.max})
+                                                 : draws.In({setting.min, setting.max});
 }
 
 // A plane beside the bar at the distance `gap` (m). A bar that is pulled to one side and released
@@ -76,7 +133,7 @@ void PlacePlane(const TrialCase& trial, double gap, std::map<std::string, double
   const double half =
       0.5 * (std::abs(side.y()) * trial.size.y() + std::abs(side.z()) * trial.size.z());
   SetVector("normal", side, drawn);
-  (*drawn)["stiffness"] = 3e3 * trial.young_modulus;  // Pa/m
+  (*drawn)["stiffness"] = kPlaneStiffness * trial.young_modulus;  // Pa/m
   (*drawn)["offset"] = -half - gap;
 }
 
@@ -140,48 +197,44 @@ TrialCase DrawCase(const std::string& name, TrialGroup group, uint64_t seed, int
   trial.is_scanned = is_scanned;
   trial.nuisance = nuisance;
   Draws draws(seed, kCaseStream);
-  trial.young_modulus = draws.LogBetween(6e4, 2e5);
-  trial.poisson_ratio = draws.Between(0.38, 0.46);
-  trial.size = {draws.Between(0.07, 0.09), draws.Between(0.016, 0.022),
-                draws.Between(0.016, 0.022)};
+  trial.young_modulus = draws.LogIn(kYoungModulus);
+  trial.poisson_ratio = draws.In(kPoissonRatio);
+  trial.size = {draws.In(kBarLength), draws.In(kBarSide), draws.In(kBarSide)};
   for (int axis = 0; axis < 3; ++axis)
-    trial.true_size[axis] = trial.size[axis] * (1 + 0.002 * draws.Between(-1, 1));
+    trial.true_size[axis] = trial.size[axis] * (1 + kSizeError * draws.In({-1, 1}));
   const NuisanceTrial wrong = trial.Disturbance();
   // Always drawn, so that the later draws of a seed do not depend on the nuisance.
-  const double edge =
-      draws.Between(wrong.least_clamp_error, wrong.largest_clamp_error) * draws.Sign();
+  const double edge = draws.In({wrong.least_clamp_error, wrong.largest_clamp_error}) * draws.Sign();
   if (wrong.largest_clamp_error > 0) trial.clamp_error = edge;
-  // The force deflects the end of the bar by about a sixth of its length.
   const double inertia = trial.size[1] * std::pow(trial.size[2], 3) / 12;
-  const double force =
-      3 * trial.young_modulus * inertia / std::pow(trial.size[0], 3) * trial.size[0] / 6;
+  const double force = 3 * trial.young_modulus * inertia / std::pow(trial.size[0], 3) *
+                       trial.size[0] / kLengthPerDeflection;
   for (int r = 0; r < 2; ++r) {
     Eigen::Vector3d direction = draws.Direction();
-    direction.x() *= 0.3;
+    direction.x() *= kAxialShare;
     direction.normalize();
     if (r == 1) {
-      // The second force must not be parallel to the first one.
       const Eigen::Vector3d first = trial.hold_forces[0].normalized();
-      direction = (direction - 0.8 * direction.dot(first) * first).normalized();
+      direction = (direction - kRemovedParallelShare * direction.dot(first) * first).normalized();
     }
-    trial.hold_forces.emplace_back(force * draws.Between(0.8, 1.2) * direction);
+    trial.hold_forces.emplace_back(force * draws.In(kHoldForce) * direction);
   }
   trial.hold_forces.resize(static_cast<size_t>(recordings));
-  trial.noise_correlation_time = 0.01 * draws.Between(0.5, 1.5);
+  trial.noise_correlation_time = kTrialSpacing * draws.In(kNoiseCorrelation);
   if (is_scanned) {
-    trial.noise = 4e-4;
+    trial.noise = kTrialScanNoise;
     trial.noise_correlation_time = 0;
   }
-  trial.damping = draws.LogBetween(3e-4, 1e-3);
+  trial.damping = draws.LogIn(kTrialDamping);
   return trial;
 }
 
 std::optional<TrialLoadCell> DrawLoadCell(uint64_t seed, double share) {
   Draws draws(seed, kLoadCellStream);
-  if (!(draws.Between(0, 1) < share)) return std::nullopt;
-  // The bar weighs about 0.3 N, the hand pulls with 0.1 N, and frames are 0.01 s apart.
-  return TrialLoadCell{
-      .deviation = draws.LogBetween(0.002, 0.02), .tare_deviation = 0.05, .delay_deviation = 0.002};
+  if (!(draws.In({0, 1}) < share)) return std::nullopt;
+  return TrialLoadCell{.deviation = draws.LogIn(kLoadCellNoise),
+                       .tare_deviation = kTareDeviation,
+                       .delay_deviation = kDelayDeviation};
 }
 
 HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_t seed) {
@@ -189,7 +242,7 @@ HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_
   HiddenEffect hidden;
   hidden.type = type;
   const EffectCard& card = *FindEntry(type)->card;
-  const Eigen::Vector3d place(trial.size[0] * draws.Between(0.25, 0.95), 0, 0);
+  const Eigen::Vector3d place(trial.size[0] * draws.In(kEffectPlace), 0, 0);
   std::map<std::string, double> drawn = {{"young_modulus", trial.young_modulus},
                                          {"poisson_ratio", trial.poisson_ratio}};
   for (const ParameterCard& parameter : card.parameters)
@@ -201,7 +254,7 @@ HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_
   SetVector("axis", card.trial.axis_along_bar ? Eigen::Vector3d::UnitX() : draws.Direction(),
             &drawn);
   SetVector(kGravitySetting, {0, 0, -kStandardGravity}, &drawn);
-  if (IsContact(card)) PlacePlane(trial, draws.Between(0.02, 0.08) * trial.size.x(), &drawn);
+  if (IsContact(card)) PlacePlane(trial, draws.In(kPlaneGap) * trial.size.x(), &drawn);
   const bool has_size = !IsLaw(hidden) && !IsContact(card);
   const bool is_vector = SizeParameters(card).size() == 3;
   const Eigen::Vector3d direction = draws.Direction();

@@ -21,6 +21,8 @@
 
 namespace lacuna {
 
+inline constexpr double kTrialSpacing = 0.01;  // s, between two frames of a recording
+
 // An effect that the truth has and the model lacks.
 struct HiddenEffect {
   std::string type;

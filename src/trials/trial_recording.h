@@ -14,7 +14,6 @@
 namespace lacuna {
 
 inline constexpr int kTrialFrames = 60;
-inline constexpr double kTrialSpacing = 0.01;     // s
 inline constexpr double kTrialDensity = 1000;     // kg/m³
 inline constexpr double kTrialFace = 1e-5;        // m: the clamp and the hand hold the nodes within
                                                   // this distance of the end faces

@@ -53,7 +53,7 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   double in_noise = effect->errors.without_nuisances;
   if (!effect->refitted) {
     Progress progress({.style = ProgressStyle::kSilent});
-    const LinearisedMisfit misfit = problem.Linearise(values, false);
+    const LinearisedMisfit misfit = problem.Linearise(values);
     const EffectRefit refit =
         Refit({{problem, values, misfit, &progress, nullptr, diagnosis.noise_level,
                 diagnosis.decision_input.baseline.model_error},
@@ -79,9 +79,12 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   outcome->relative_error = size > 0 ? std::sqrt(difference / size) : 1;
 }
 
-// `decided`: what the decision of the case was made from.
-std::optional<RecordedPower> Simulated(const TrialCase& trial, const DecisionInput& decided,
-                                       const std::filesystem::path& output) {
+// How often recordings like that of the case, simulated to first order, lead to each verdict.
+// `decided`: what the decision of the case was made from. No value unless exactly one effect is
+// hidden and, where it is not in the library, a decision with it is in the folder `output`.
+std::optional<RecordedPower> SimulatePowerOfCase(const TrialCase& trial,
+                                                 const DecisionInput& decided,
+                                                 const std::filesystem::path& output) {
   if (trial.hidden.size() != 1) return std::nullopt;
   const std::string& truth = trial.hidden.front().type;
   const bool is_known = trial.group != TrialGroup::kRemoved;
@@ -150,7 +153,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem:
   if (trial.group == TrialGroup::kRemoved)
     SaveDecisionInput(InputWithRemoved(problem, calibration.parameters, diagnosis.time_step),
                       output / kWithRemovedFolder);
-  outcome.simulated = Simulated(trial, diagnosis.decision_input, output);
+  outcome.simulated = SimulatePowerOfCase(trial, diagnosis.decision_input, output);
   return outcome;
 }
 
@@ -205,7 +208,7 @@ bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output
   outcome.verdict = decision.verdict;
   outcome.named = decision.names;
   outcome.probabilities = decision.record.probabilities;
-  outcome.simulated = Simulated(trial, input, output);
+  outcome.simulated = SimulatePowerOfCase(trial, input, output);
   SaveTrialOutcome(outcome, output);
   return true;
 }

@@ -56,8 +56,8 @@ Eigen::VectorXd ChangeBy(const HiddenEffect& hidden, const CalibrationProblem& p
   candidate.effect = MakeHidden(hidden);
   candidate.replaces_material = IsLaw(hidden);
   const PredictionStudy study = WithCandidate(problem.WithEstimatedNoise(), candidate);
-  const LinearisedMisfit with =
-      CalibrationProblem(study, problem.body()->mesh).Linearise(values, false, {}, &misfit);
+  const LinearisedMisfit with = CalibrationProblem(study, problem.body()->mesh)
+                                    .Linearise(values, {.correspondences = &misfit});
   if (!with.usable) throw SimulationFailure(hidden.type + ": " + with.message);
   return with.residual - misfit.residual;
 }
@@ -151,8 +151,8 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   }
   AppendColumns(change, {LinearPrior{}}, &columns, &priors);
   const LinearGaussianModel model(
-      WhitenedRows(misfit.residual, misfit, trial.noise_correlation_time, false),
-      WhitenedRows(columns, misfit, trial.noise_correlation_time, false), priors);
+      WhitenedRows(misfit.residual, misfit, {.correlation_time = trial.noise_correlation_time}),
+      WhitenedRows(columns, misfit, {.correlation_time = trial.noise_correlation_time}), priors);
   std::vector<int> taken(own);
   std::iota(taken.begin(), taken.end(), 0);
   const double remaining = model.Remaining(taken, {own}, {own}, 1)(0, 0);
@@ -212,6 +212,9 @@ std::string WhyNotHidden(const std::string& type) {
 std::vector<std::string> ReadEffectTypes(const Config& config, const std::string& key) {
   const std::vector<std::string> types = config.Texts(key);
   for (size_t k = 0; k < types.size(); ++k) {
+    if (std::find(types.begin(), types.begin() + static_cast<std::ptrdiff_t>(k), types[k]) !=
+        types.begin() + static_cast<std::ptrdiff_t>(k))
+      config.FailAtItem(key, k, fmt::format("\"{}\" is listed twice", types[k]));
     const std::string why = WhyNotHidden(types[k]);
     if (why.empty()) continue;
     std::vector<std::string> possible;

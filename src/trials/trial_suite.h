@@ -29,7 +29,8 @@ struct TrialSuite {
 };
 // The types of effects listed under the key; none if it is absent. Throws InputError, which
 // lists the possible types, for an effect that cannot be hidden: one that the catalogue does not
-// have, one that numbers alone do not describe, and the law of every model.
+// have, one that numbers alone do not describe, and the law of every model; and for one that is
+// listed twice.
 std::vector<std::string> ReadEffectTypes(const Config& config, const std::string& key);
 
 // Throws InputError at the key that is wrong.

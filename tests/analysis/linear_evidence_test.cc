@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace lacuna {
@@ -49,7 +50,7 @@ TEST(LinearGaussianModel, HasTheEvidenceOfATruncatedPrior) {
     double sum = 0;
     for (int i = 0; i < 50000; ++i) {
       const double theta = i * h;
-      sum += (i == 0 ? 0.5 : 1) * h * 2 / (s * std::sqrt(2 * M_PI)) *
+      sum += (i == 0 ? 0.5 : 1) * h * 2 / (s * std::sqrt(2 * std::numbers::pi)) *
              std::exp(-0.5 * theta * theta / (s * s) -
                       0.5 * ((r + theta * a).squaredNorm() - r.squaredNorm()));
     }

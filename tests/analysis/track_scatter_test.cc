@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace lacuna {
@@ -19,7 +20,7 @@ Eigen::MatrixXd Swinging(double noise) {
   std::normal_distribution<double> normal;
   return Eigen::MatrixXd::NullaryExpr(
       3 * kPoints, kFrames, [&](Eigen::Index row, Eigen::Index frame) {
-        return 0.02 * std::sin(0.02 * M_PI * static_cast<double>(frame) +
+        return 0.02 * std::sin(0.02 * std::numbers::pi * static_cast<double>(frame) +
                                static_cast<double>(row / 3)) +
                noise * normal(random);
       });

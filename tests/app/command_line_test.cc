@@ -352,6 +352,30 @@ TEST(CommandLine, WhatIsWrittenStaysInItsFolder) {
   EXPECT_THAT(same.said, HasSubstr("recording a/b would have the same folder, a_b, as another"));
 }
 
+// The errors of two synthetic data sets are independent, unless one is a repetition of the other.
+TEST(CommandLine, SimulatedExperimentsHaveErrorsOfTheirOwn) {
+  const TemporaryFolder folder;
+  const auto markers = [&](const std::string& name, const std::string& options) {
+    std::ofstream(folder / "e.yaml")
+        << "use: " << Experiment("hidden_effect.yaml") << "\nname: " << name
+        << "\nnoise: 0.1 mm\n"
+           "mesh: {max_volume: 8000 mm^3, order: 2, preserve_surface: false}\n"
+           "motion: {time_step: 10 ms}\nrecordings:\n  - {name: pull, recording: "
+        << Experiment("recordings/hidden_effect/recording_1")
+        << ", to: 0.12 s, hold: {release: 0.1037 s, force: [0 N, 0 N, 0.05 N], region: "
+           "{half_space: {point: [71.4274 mm, 0 mm, 0 mm], normal: [1, 0, 0]}}}}\n";
+    const Ending ending =
+        Lacuna("simulate " + (folder / "e.yaml").string() + " -o " + (folder / "out").string() +
+               " --recording " + (folder / "played").string() + options);
+    EXPECT_EQ(ending.status, 0) << ending.said;
+    return FileContent(folder / "played/markers.csv");
+  };
+  const std::string first = markers("one", "");
+  EXPECT_EQ(markers("one", ""), first);
+  EXPECT_NE(markers("two", ""), first);
+  EXPECT_NE(markers("one", " --seed 1"), first);
+}
+
 TEST(CommandLine, AnUnwritableOutputIsToldBeforeTheComputation) {
   const TemporaryFolder folder;
   std::ofstream(folder / "occupied") << "a file";

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 
 #include "core/parallel.h"
@@ -30,7 +31,7 @@ const Body& Beam(int cells, int order) {
 // Bent by 90° along its length, so that elements are turned and strained by up to 15 %.
 Eigen::VectorXd Bent(const Body& body) {
   Eigen::VectorXd position(3 * body.NodeCount());
-  const double radius = 0.2 / (M_PI / 2);
+  const double radius = 0.2 / (std::numbers::pi / 2);
   for (int i = 0; i < body.NodeCount(); ++i) {
     const Eigen::Vector3d x = body.mesh.nodes.col(i);
     const double angle = x[0] / radius;

@@ -18,6 +18,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -216,8 +217,8 @@ Result Simulate(const Beam& beam, const Motion& motion, int steps, double tolera
     history = linearised->equation.Advance(history.position + solution);
     const Eigen::Vector3d edge =
         history.position.segment<3>(3 * beam.tip) - history.position.segment<3>(3 * beam.root);
-    result.largest_turn =
-        std::max(result.largest_turn, std::abs(std::atan2(edge[2], edge[0])) * 180 / M_PI);
+    result.largest_turn = std::max(result.largest_turn,
+                                   std::abs(std::atan2(edge[2], edge[0])) * 180 / std::numbers::pi);
   }
   result.factorisations = solver.factorisations();
   result.memory = PeakMemory();

@@ -56,10 +56,11 @@ int Run(const std::string& file, int repeats) {
   std::vector<double> forward, tangents, pilots, nuisances, ranking;
   for (int k = 0; k < repeats; ++k) {
     LinearisedMisfit misfit;
-    forward.push_back(Seconds([&] { misfit = problem.Linearise(values, false); }));
-    tangents.push_back(Seconds([&] { problem.Linearise(values, true, directions); }));
+    forward.push_back(Seconds([&] { misfit = problem.Linearise(values); }));
+    tangents.push_back(Seconds(
+        [&] { problem.Linearise(values, {.with_jacobian = true, .directions = directions}); }));
     pilots.push_back(Seconds([&] { RunPilots(problem, values, misfit, {}); }));
-    misfit = problem.Linearise(values, true);
+    misfit = problem.Linearise(values, {.with_jacobian = true});
     nuisances.push_back(Seconds([&] {
       ModelNuisances({problem, values, misfit, GripMotions{}, Eigen::MatrixXd()});
     }));

@@ -81,5 +81,22 @@ TEST_F(FitOutOfBudget, EndsTheStagesOfAFitFromTheStart) {
   EXPECT_LE(fit.predictions, kMost);
 }
 
+// A first part over which the body hardly deforms can end at any modulus.
+TEST(FitFromStart, IsNotWorseThanItsStart) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const PredictionStudy study = ReadBarStudy(
+      folder.Path(), {{"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"}, {"1 1/s", "2 1/s"}});
+  const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 2));
+  Calibration astray;
+  astray.parameters = problem.Start();
+  astray.parameters[0] = 1e9;  // Pa
+  SilentProgress progress;
+  const Calibration fit = FitFromStart(problem, &progress, &astray);
+  EXPECT_TRUE(fit.usable) << fit.message;
+  EXPECT_LE(fit.rms, fit.start_rms);
+  EXPECT_NEAR(fit.parameters[0], 1e5, 2e4);
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -16,6 +16,7 @@
 #include "core/parallel.h"
 #include "effects/catalogue.h"
 #include "prediction/recording_noise.h"
+#include "record/csv_table.h"
 #include "support/held_bar.h"
 #include "support/replace_in_file.h"
 #include "support/silent_progress.h"
@@ -60,21 +61,22 @@ TEST(CalibrationProblem, JacobianAgreesWithDifferences) {
                                  1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4)
                                     .finished();
   // How errors of the markers' places show is what it is at `at`.
-  const LinearisedMisfit here = problem.Linearise(at, true);
+  const LinearisedMisfit here = problem.Linearise(at, {.with_jacobian = true});
   ASSERT_TRUE(here.usable) << here.message;
   ASSERT_EQ(here.jacobian.cols(), kCount);
   for (Eigen::Index k = 0; k < kCount; ++k) {
     const Eigen::VectorXd shift = steps[k] * Eigen::VectorXd::Unit(kCount, k);
-    const Eigen::VectorXd difference = (problem.Linearise(at + shift, false, {}, &here).residual -
-                                        problem.Linearise(at - shift, false, {}, &here).residual) /
-                                       (2 * steps[k]);
+    const Eigen::VectorXd difference =
+        (problem.Linearise(at + shift, {.correspondences = &here}).residual -
+         problem.Linearise(at - shift, {.correspondences = &here}).residual) /
+        (2 * steps[k]);
     // Truncation, and trajectories that are known to 1e-8 of the forces only.
     EXPECT_LT((here.jacobian.col(k) - difference).norm(), 1e-3 * difference.norm()) << names[k];
   }
   // And the fitted frames of that, whitened, are what is fitted.
   const Prediction fitted = problem.Predict(at, true);
   ASSERT_TRUE(fitted.usable) << fitted.message;
-  const Eigen::MatrixXd white = WhitenedRows(here.jacobian, here, 0, true);
+  const Eigen::MatrixXd white = WhitenedRows(here.jacobian, here, {.fitted_only = true});
   EXPECT_LT((fitted.jacobian - white.topRows(fitted.jacobian.rows())).norm(),
             1e-6 * fitted.jacobian.norm());
 }
@@ -97,11 +99,12 @@ TEST(CalibrationProblem, DifferentiatesBySettingsThatFollowTheMaterial) {
   at.tail<3>() << 0.01, 0.03, -0.02;  // the force of the hold
   constexpr double kStep = 1e-3;
   const Eigen::VectorXd shift = kStep * Eigen::VectorXd::Unit(at.size(), 0);
-  const LinearisedMisfit here = problem.Linearise(at, true);
+  const LinearisedMisfit here = problem.Linearise(at, {.with_jacobian = true});
   ASSERT_TRUE(here.usable) << here.message;
-  const Eigen::VectorXd difference = (problem.Linearise(at + shift, false, {}, &here).residual -
-                                      problem.Linearise(at - shift, false, {}, &here).residual) /
-                                     (2 * kStep);
+  const Eigen::VectorXd difference =
+      (problem.Linearise(at + shift, {.correspondences = &here}).residual -
+       problem.Linearise(at - shift, {.correspondences = &here}).residual) /
+      (2 * kStep);
   // Truncation, and sensitivities that are solved to 1e-4.
   EXPECT_LT((here.jacobian.col(0) - difference).norm(), 2e-3 * difference.norm());
 }
@@ -246,12 +249,22 @@ void Misplace(const std::filesystem::path& file) {
 }
 
 // Where a marker is on the object, a fitted recording tells for one that is not fitted.
+// Lists the markers of a recording in the opposite order, under their names.
+void ReverseMarkers(const std::filesystem::path& folder) {
+  const CsvTable table = LoadCsv(folder / "markers.csv");
+  CsvTable reversed{table[0]};
+  for (size_t m = table.size() / 3; m > 0; --m)
+    reversed.insert(reversed.end(), {table[3 * m - 2], table[3 * m - 1], table[3 * m]});
+  SaveCsv(reversed, folder / "markers.csv");
+}
+
 TEST(CalibrationProblem, KnowsMisplacedMarkersFromFittedRecordings) {
   const TemporaryFolder folder;
   HeldBarTruth other_hold;
   other_hold.hold_force = {0, -0.03, 0.04};
   WriteBarRecording(folder.Path(), FilmHeldBar({}));
   WriteBarRecording(folder / "other", FilmHeldBar(other_hold));
+  ReverseMarkers(folder / "other");
   const auto misfits = [&] {
     const PredictionStudy study = ReadBarStudy(
         folder.Path(), {{"recordings:\n",
@@ -272,8 +285,10 @@ TEST(CalibrationProblem, KnowsMisplacedMarkersFromFittedRecordings) {
   const std::vector<RecordingMisfit> together = misfits();
   EXPECT_FALSE(together[0].has_own_places);
   // Each from a prediction whose equilibrium was sought near another one.
-  EXPECT_LT((together[0].place_offset - together[1].place_offset).lpNorm<Eigen::Infinity>(), 1e-9);
-  EXPECT_NEAR(std::abs(together[0].place_offset(0, 7)), 1.5e-3, 2e-4);
+  EXPECT_LT((together[0].place_offset.rowwise().reverse() - together[1].place_offset)
+                .lpNorm<Eigen::Infinity>(),
+            1e-9);
+  EXPECT_NEAR(std::abs(together[1].place_offset(0, 7)), 1.5e-3, 2e-4);
   // The meshes differ.
   EXPECT_LT(together[0].held_out.rms, 3e-4);
   // At the measured places, one of the markers is 1.5 mm off in every frame.
@@ -310,7 +325,7 @@ TEST(CalibrationProblem, PredictsRecordingsSideBySideAsOneAfterTheOther) {
     // A study of its own: an equilibrium is sought from the last one that was found.
     const CalibrationProblem own(study, BarMesh({6, 2, 2}, 1));
     prediction[k] = own.Predict(own.Start(), true);
-    linearised[k] = own.Linearise(own.Start(), true);
+    linearised[k] = own.Linearise(own.Start(), {.with_jacobian = true});
     misfits[k] = MisfitsOf(own, own.Start());
     ASSERT_TRUE(prediction[k].usable) << prediction[k].message;
     ASSERT_TRUE(linearised[k].usable) << linearised[k].message;

@@ -200,7 +200,7 @@ TEST(HangingBar, FollowsItsClamp) {
                   "bar.clamp.turn_x", "bar.clamp.turn_y", "bar.clamp.turn_z"));
   EXPECT_EQ(problem.UnitOf(1), "m");
   EXPECT_EQ(problem.UnitOf(4), "rad");
-  const LinearisedMisfit here = problem.Linearise(problem.Start(), true);
+  const LinearisedMisfit here = problem.Linearise(problem.Start(), {.with_jacobian = true});
   ASSERT_TRUE(here.usable) << here.message;
   // Gravity is uniform: the whole bar is displaced with its clamp.
   for (Eigen::Index row = 0; row < here.residual.size(); ++row)
@@ -208,7 +208,7 @@ TEST(HangingBar, FollowsItsClamp) {
       EXPECT_NEAR(here.jacobian(row, 1 + axis), row % 3 == axis ? 1 : 0, 1e-3);  // solved to 1e-4
   Eigen::VectorXd displaced = problem.Start();
   displaced.segment<3>(1) << 2e-3, -1e-3, 3e-3;
-  const LinearisedMisfit there = problem.Linearise(displaced, false);
+  const LinearisedMisfit there = problem.Linearise(displaced);
   ASSERT_TRUE(there.usable) << there.message;
   const Eigen::VectorXd moved = displaced.segment<3>(1).replicate(here.residual.size() / 3, 1);
   // Equilibria are known to 1e-6 of the forces, a few nm.
@@ -234,13 +234,14 @@ TEST(HangingBar, HasTheDerivativesByDensityAndPlacementInMotion) {
   // A turn at which its derivative differs by 2 % from that at zero.
   at.tail(10) << 1070, 0.01, 0.03, -0.02, 1e-3, -2e-3, 1e-3, 0.02, -0.03, 0.015;
   steps << 200, 1, 2e-3, 2e-3, 2e-3, 1e-4, 1e-4, 1e-4, 1e-3, 1e-3, 1e-3;
-  const LinearisedMisfit here = problem.Linearise(at, true);
+  const LinearisedMisfit here = problem.Linearise(at, {.with_jacobian = true});
   ASSERT_TRUE(here.usable) << here.message;
   for (Eigen::Index k = 0; k < at.size(); ++k) {
     const Eigen::VectorXd shift = steps[k] * Eigen::VectorXd::Unit(at.size(), k);
-    const Eigen::VectorXd difference = (problem.Linearise(at + shift, false, {}, &here).residual -
-                                        problem.Linearise(at - shift, false, {}, &here).residual) /
-                                       (2 * steps[k]);
+    const Eigen::VectorXd difference =
+        (problem.Linearise(at + shift, {.correspondences = &here}).residual -
+         problem.Linearise(at - shift, {.correspondences = &here}).residual) /
+        (2 * steps[k]);
     EXPECT_GT(difference.norm(), 0) << NamesOf(problem)[static_cast<size_t>(k)];
     // Truncation, and trajectories that are known to 1e-8 of the forces only.
     EXPECT_LT((here.jacobian.col(k) - difference).norm(), 2e-3 * difference.norm())

@@ -64,7 +64,7 @@ TEST(MeasuredForce, DeterminesTheModulusOfABarThatIsStretched) {
   EXPECT_GT(SharesOfData(problem, fit.parameters).at(0).value().forces, 0.999);
 
   // A prediction that is known is not made again.
-  const LinearisedMisfit known = problem.Linearise(fit.parameters, false);
+  const LinearisedMisfit known = problem.Linearise(fit.parameters);
   const FittedReaction same = MisfitsOf(problem, fit.parameters, &known).at(0).reactions.at(0);
   EXPECT_NEAR(same.in_fit.rms, jaw.in_fit.rms, 1e-6 * jaw.in_fit.rms);
   EXPECT_NEAR(same.held_out.rms, jaw.held_out.rms, 1e-6 * jaw.held_out.rms);
@@ -140,7 +140,7 @@ TEST(MeasuredForce, MayBeLateAndOfUnknownSign) {
   const FittedReaction jaw = MisfitsOf(problem, fit.parameters).at(0).reactions.at(0);
   EXPECT_TRUE(jaw.is_opposite);
   EXPECT_LT(jaw.held_out.rms_over_sigma, 3);
-  const LinearisedMisfit known = problem.Linearise(fit.parameters, false);
+  const LinearisedMisfit known = problem.Linearise(fit.parameters);
   EXPECT_TRUE(MisfitsOf(problem, fit.parameters, &known).at(0).reactions.at(0).is_opposite);
 }
 
@@ -163,8 +163,9 @@ TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
       (Eigen::VectorXd(10) << 200, 1e-3, 1e-3, 1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4).finished();
   // An effect that the model lacks, which a diagnosis would try.
   const std::shared_ptr<const Effect> gravity = MakeEffect("gravity", {{"acceleration_x", 0.0}});
-  const LinearisedMisfit here =
-      problem.Linearise(at, true, {{.perturbation = {.effect = gravity, .parameter = 0}}});
+  const LinearisedMisfit here = problem.Linearise(
+      at, {.with_jacobian = true,
+           .directions = {{.perturbation = {.effect = gravity, .parameter = 0}}}});
   ASSERT_TRUE(here.usable) << here.message;
   ASSERT_EQ(here.parts.size(), 3u);
   const LinearisedMisfit::Part& torque = here.parts[2];
@@ -176,9 +177,10 @@ TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
   EXPECT_EQ(force.errors.common, 0.3);
   for (Eigen::Index k = 0; k < at.size(); ++k) {
     const Eigen::VectorXd shift = steps[k] * Eigen::VectorXd::Unit(at.size(), k);
-    const Eigen::VectorXd difference = (problem.Linearise(at + shift, false, {}, &here).residual -
-                                        problem.Linearise(at - shift, false, {}, &here).residual) /
-                                       (2 * steps[k]);
+    const Eigen::VectorXd difference =
+        (problem.Linearise(at + shift, {.correspondences = &here}).residual -
+         problem.Linearise(at - shift, {.correspondences = &here}).residual) /
+        (2 * steps[k]);
     for (const LinearisedMisfit::Part* part : {&force, &torque}) {
       // With these delays the last reading of the torque lies beyond the path of the grip, and its
       // rate is the mean over a step across the end of the path.
@@ -209,7 +211,8 @@ TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
   // The whitened rows of all frames, in the same order, are what is fitted.
   const Prediction fitted = problem.Predict(at, true);
   ASSERT_TRUE(fitted.usable) << fitted.message;
-  const Eigen::MatrixXd white = WhitenedRows(here.jacobian.leftCols(at.size()), here, 0, true);
+  const Eigen::MatrixXd white =
+      WhitenedRows(here.jacobian.leftCols(at.size()), here, {.fitted_only = true});
   ASSERT_EQ(fitted.jacobian.rows(), white.rows());
   EXPECT_LT((fitted.jacobian - white).norm(), 1e-6 * fitted.jacobian.norm());
   ASSERT_EQ(static_cast<Eigen::Index>(fitted.before.size()), white.rows());

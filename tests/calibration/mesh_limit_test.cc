@@ -46,7 +46,7 @@ class MeshLimitOfACoarseBar : public testing::Test {
     // Held at its face: a clamp of some depth would reach more nodes of a finer mesh.
     ReplaceInFile(*folder_ / "recording.yaml", "point: [0.002 m", "point: [0.00001 m");
     coarse_ = new BarFit(folder_->Path(), "4000 mm^3");
-    misfit_ = new LinearisedMisfit(Problem().Linearise(Values(), /*with_jacobian=*/true));
+    misfit_ = new LinearisedMisfit(Problem().Linearise(Values(), {.with_jacobian = true}));
   }
   static void TearDownTestSuite() {
     delete misfit_;
@@ -74,8 +74,7 @@ class MeshLimitOfACoarseBar : public testing::Test {
     EXPECT_TRUE(on_finer.has_value());
     if (!on_finer) return {};
     EXPECT_EQ(on_finer->ratio, Finer()->ratio);
-    return on_finer->problem->Linearise(MovedBy(Problem().parameters(), Values(), change), false)
-        .residual;
+    return on_finer->problem->Linearise(MovedBy(Problem().parameters(), Values(), change)).residual;
   }
 
   static constexpr double kRatio = 12;  // that of a mesh with few elements
@@ -127,12 +126,12 @@ TEST_F(MeshLimitOfACoarseBar, IsFoundFromWhatWasKept) {
 // With parameters of its own a finer mesh moves as the coarse one does; with the same, it parts.
 TEST_F(MeshLimitOfACoarseBar, ComesFromAFinerMeshInPhase) {
   ASSERT_TRUE(Finer().has_value());
-  const Eigen::VectorXd before = Problem().Linearise(Values(), false).residual;
+  const Eigen::VectorXd before = Problem().Linearise(Values()).residual;
   const Eigen::VectorXd with_the_same =
       ResidualOnFiner(Eigen::VectorXd::Zero(Values().size())) - before;
   const Eigen::VectorXd with_its_own = ResidualOnFiner(Finer()->change) - before;
   const auto length = [&](const Eigen::VectorXd& part) {
-    return WhitenedRows(part, MisfitThere(), 0, false).norm();
+    return WhitenedRows(part, MisfitThere()).norm();
   };
   EXPECT_LT(length(with_its_own), 0.5 * length(with_the_same));
   // With long steps on both meshes the difference is nearly the same one.
@@ -141,12 +140,12 @@ TEST_F(MeshLimitOfACoarseBar, ComesFromAFinerMeshInPhase) {
 
 TEST_F(MeshLimitOfACoarseBar, ComesFromTheResidualAtItsRatio) {
   ASSERT_TRUE(Finer().has_value());
-  const Eigen::VectorXd before = Problem().Linearise(Values(), false).residual;
+  const Eigen::VectorXd before = Problem().Linearise(Values()).residual;
   const Eigen::VectorXd again = ResidualAtRatio(Problem(), Values(), *Finer(), kRatio);
   ASSERT_EQ(again.size(), Finer()->other.size());
   // The last step of the search, which may remove half of ‖difference‖², is added to first order.
   EXPECT_LT((again - Finer()->other).norm(), 0.03 * (Finer()->other - Finer()->own).norm());
-  EXPECT_EQ(Problem().Linearise(Values(), false).residual, before)
+  EXPECT_EQ(Problem().Linearise(Values()).residual, before)
       << "a prediction depends on nothing that was predicted before it";
 }
 
@@ -193,12 +192,12 @@ TEST(MeshLimit, AFitFarFromTheMeasurementsIsComparedWithAMeshThatIsLessFine) {
   WriteBarRecording(folder.Path(), FilmHeldBar({}));
   const BarFit fit(folder.Path(), "4000 mm^3");
   const Eigen::VectorXd& values = fit.calibration.parameters;
-  LinearisedMisfit misfit = fit.problem.Linearise(values, /*with_jacobian=*/true);
+  LinearisedMisfit misfit = fit.problem.Linearise(values, {.with_jacobian = true});
   ASSERT_TRUE(misfit.usable) << misfit.message;
   // 10 of the 26 frames are held out: 3.5 σ in the others would be less than 3 σ if they counted.
   constexpr double kFar = 3.5;
   misfit.residual *= kFar / RmsOverSigma(misfit.residual, misfit, /*fitted_only=*/true);
-  const double fitted = WhitenedRows(misfit.residual, misfit, 0, true).norm();
+  const double fitted = WhitenedRows(misfit.residual, misfit, {.fitted_only = true}).norm();
   ASSERT_LT(fitted, kFarFromTruth * std::sqrt(static_cast<double>(ObservedRows(misfit))));
   const auto other = MakeOtherMesh(fit.problem, values, misfit);
   ASSERT_TRUE(other.has_value());

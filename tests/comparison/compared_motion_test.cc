@@ -55,6 +55,9 @@ TEST(ComparedMotion, AddsStrainAndHeightAndWritesFieldsAndTheForce) {
   EXPECT_THAT(comparison.record.notes, testing::IsEmpty());
   const ComparedRecording& bar = comparison.record.recordings.at(0);
   EXPECT_TRUE(bar.height_by_gravity);
+  // The number that the fit has printed.
+  EXPECT_NEAR(bar.parts[0].error.rms_over_sigma,
+              LoadCalibration(run).recordings[0].in_fit.rms_over_sigma, 1e-9);
   for (const ComparedPart& part : bar.parts) {
     std::vector<std::string> quantities;
     for (const ErrorTrend& trend : part.trends) quantities.push_back(trend.quantity);

@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <string>
+#include <vector>
 
 #include "calibration/calibration_fits.h"
 #include "calibration/calibration_problem.h"
 #include "support/held_bar.h"
+#include "support/replace_in_file.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
@@ -33,6 +37,54 @@ UnexplainedForce ForceOn(const HeldBarTruth& truth) {
   const ReplayedMotion motion = Replay(model, problem.NuisanceOf(0, calibration.parameters));
   EXPECT_TRUE(motion.summary.IsUsable()) << motion.summary.message;
   return EstimateUnexplainedForce(model, motion, problem.ErrorsOf(model));
+}
+
+// A complete model whose clamp is not where it was said to be: the recording is a prediction with a
+// placement far from the mean of its prior, and noise.
+TEST(ForceEstimate, KeepsTheFittedPlacementOfAClamp) {
+  const TemporaryFolder folder;
+  const auto study_of = [&](const std::vector<Eigen::Matrix3Xd>& frames) {
+    WriteBarRecording(folder.Path(), frames);
+    ReplaceInFile(folder / "recording.yaml", "normal: [-1, 0, 0]}}]",
+                  "normal: [-1, 0, 0]}, placement: {shift_deviation: 0.5 mm, turn_deviation: 1 "
+                  "deg}}]");
+    return ReadBarStudy(folder.Path(),
+                        {{"motion: {time_step: 1.5 ms}", "motion: {time_step: 3 ms}"},
+                         {"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"}});
+  };
+  std::vector<Eigen::Matrix3Xd> frames = FilmHeldBar({});
+  const TetMesh mesh = BarMesh({4, 1, 1}, 2);
+  Eigen::VectorXd nuisance;
+  {
+    const PredictionStudy study = study_of(frames);
+    const CalibrationProblem problem(study, mesh);
+    const RecordingModel& model = problem.models()[0];
+    nuisance = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.nuisances().size()));
+    for (size_t k = 0; k < model.nuisances().size(); ++k) {
+      const std::string& name = model.nuisances()[k].prior.name;
+      if (name == "bar.hold_force_y") nuisance[static_cast<Eigen::Index>(k)] = 0.03;  // N
+      if (name == "bar.clamp.shift_z") nuisance[static_cast<Eigen::Index>(k)] = 2e-3;
+    }
+    ASSERT_GT(nuisance.lpNorm<1>(), 0.03);
+    const ReplayedMotion motion = Replay(model, nuisance);
+    ASSERT_TRUE(motion.summary.IsUsable()) << motion.summary.message;
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(0, 5e-5);
+    for (size_t frame = 0; frame < frames.size(); ++frame)
+      frames[frame] = motion.predicted.col(static_cast<Eigen::Index>(frame)).reshaped(3, kMarkers) +
+                      Eigen::Matrix3Xd::NullaryExpr(3, kMarkers, [&] { return noise(random); });
+  }
+  const PredictionStudy study = study_of(frames);
+  const CalibrationProblem problem(study, mesh);
+  const RecordingModel& model = problem.models()[0];
+  const UnexplainedForceRecord force =
+      EstimateUnexplainedForce(model, Replay(model, nuisance), problem.ErrorsOf(model)).record;
+  ASSERT_TRUE(force.usable) << force.message;
+  EXPECT_TRUE(force.fit.converged);
+  EXPECT_FALSE(force.fit.is_significant);
+  EXPECT_LT(force.fit.rms_over_sigma_with, 1.2);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_LT(force.net.rms[axis], 2 * force.net.rms_deviation[axis]) << axis;
 }
 
 // Rms over time of the error of one component of the net force.

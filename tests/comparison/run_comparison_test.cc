@@ -28,6 +28,11 @@ using testing::Not;
 constexpr double kNoise = 5e-5;
 constexpr int kMarkers = 4, kFrames = 120, kFitted = 80;
 
+// The noise of each coordinate of a marker.
+using NoiseOfMarker = std::function<double(int marker)>;
+
+double EqualNoise(int) { return kNoise; }
+
 // The difference of a marker in a frame, without noise.
 using Planted = std::function<Eigen::Vector3d(int frame, int marker)>;
 
@@ -37,9 +42,11 @@ json Measure() {
 }
 
 // Writes the folder that `lacuna fit` would. The object rests for 30 frames, then swings; the
-// recordings repeat each other, and their releases are 0.05 s apart.
+// recordings repeat each other, and their releases are 0.05 s apart. If it is `mirrored`, markers
+// swing the more the larger their x, and the second recording has them in the opposite order.
 CsvTable WriteRun(const std::filesystem::path& run, const std::vector<std::string>& names,
-                  const Planted& planted) {
+                  const Planted& planted, const NoiseOfMarker& noise_of = EqualNoise,
+                  bool mirrored = false) {
   RunDirectory directory(run);
   json entries = json::array(), recordings = json::array();
   for (size_t r = 0; r < names.size(); ++r) {
@@ -66,26 +73,31 @@ CsvTable WriteRun(const std::filesystem::path& run, const std::vector<std::strin
                             {"recordings", recordings},
                             {"prior_conflicts", json::array()}};
   std::mt19937 random(7);
-  std::normal_distribution<double> normal(0, kNoise);
-  std::vector<std::vector<double>> columns(11);
+  std::normal_distribution<double> normal(0, 1);
+  std::vector<std::vector<double>> columns(13);
   for (size_t r = 0; r < names.size(); ++r) {
     for (int f = 0; f < kFrames; ++f) {
       const double time = 0.01 * f, moving = std::max(0.0, time - 0.3 - 0.05 * r);
       for (int m = 0; m < kMarkers; ++m) {
         const bool seen = m != 3 || f % 10 != 0;
         std::vector<double> row{1.0 * r, 1.0 * f, time, 1.0 * m, r == 0 && f < kFitted ? 1.0 : 0.0};
-        const Eigen::Vector3d place(0.02 * m, 0, 0.02 * std::sin(8 * moving));
+        const double x = 0.02 * (mirrored && r == 1 ? kMarkers - 1 - m : m);
+        const double swing = mirrored ? x / 0.06 : 1;
+        const Eigen::Vector3d place(x, 0, 0.02 * swing * std::sin(8 * moving));
         for (int axis = 0; axis < 3; ++axis)
-          row.push_back(seen ? place[axis] + normal(random) : kUnknown);
+          row.push_back(seen ? place[axis] + noise_of(m) * normal(random) : kUnknown);
         for (int axis = 0; axis < 3; ++axis)
-          row.push_back(seen ? planted(f, m)[axis] + normal(random) : kUnknown);
+          row.push_back(seen ? planted(f, m)[axis] + noise_of(m) * normal(random) : kUnknown);
+        row.push_back(kUnknown);
+        row.push_back(seen ? noise_of(m) : kUnknown);
         for (size_t k = 0; k < columns.size(); ++k) columns[k].push_back(row[k]);
       }
     }
   }
-  const char* titles[] = {"recording",      "frame",          "time_s",        "marker",
-                          "fitted",         "measured_x_m",   "measured_y_m",  "measured_z_m",
-                          "difference_x_m", "difference_y_m", "difference_z_m"};
+  const char* titles[] = {"recording",      "frame",          "time_s",         "marker",
+                          "fitted",         "measured_x_m",   "measured_y_m",   "measured_z_m",
+                          "difference_x_m", "difference_y_m", "difference_z_m", "along_normal_m",
+                          "sigma_m"};
   CsvTable table;
   for (size_t k = 0; k < columns.size(); ++k)
     table.push_back(
@@ -143,6 +155,44 @@ TEST(Comparison, AnErrorThatIsOnlyNoiseIsReportedAsNoise) {
   EXPECT_THAT(words[0], HasSubstr("Nothing here contradicts the model."));
 }
 
+// Two of four markers have five times the noise. Over the noise of a typical marker, the rms error
+// would be √((1 + 25)/2) = 3.6.
+TEST(Comparison, EachMarkerCountsInUnitsOfItsOwnNoise) {
+  const TemporaryFolder folder;
+  const std::filesystem::path run = folder / "run";
+  WriteRun(run, {"a"}, Nothing, [](int marker) { return (marker % 2 == 0 ? 1 : 5) * kNoise; });
+  const Comparison comparison = CompareRun(run);
+  const ComparedRecording& recording = comparison.record.recordings[0];
+  for (const ComparedPart& part : recording.parts) {
+    EXPECT_NEAR(part.error.rms_over_sigma, 1, 0.1);
+    EXPECT_NEAR(part.error.rms_over_floor, 1, 0.25);
+    EXPECT_FALSE(part.worst_period);
+    for (const ErrorTrend& trend : part.trends)
+      for (const ErrorBin& bin : trend.bins)
+        EXPECT_NEAR(bin.rms_over_sigma, 1, 0.4) << trend.quantity;  // at least 40 coordinates
+  }
+  EXPECT_NEAR(recording.noise_floor.floor, kNoise, 0.3 * kNoise);
+  SaveComparison(comparison, run);
+  const CsvTable by_marker = LoadCsv(run / "comparison/by_marker.csv");
+  ASSERT_EQ(by_marker[5].name, "rms_over_sigma");
+  for (const double multiple : by_marker[5].values) EXPECT_NEAR(multiple, 1, 0.25);
+}
+
+TEST(Comparison, AFitOfAnEarlierVersionIsRefused) {
+  const TemporaryFolder folder;
+  CsvTable table = WriteRun(folder / "run", {"a"}, Nothing);
+  table.pop_back();  // sigma_m
+  RunDirectory directory(folder / "run");
+  directory.Begin({{"recordings", json::array()}}, {}, 0);
+  directory.Store("calibration", "other", [&](const std::filesystem::path& stage) {
+    std::filesystem::copy_file(folder / "run/calibration/calibration.json",
+                               stage / "calibration.json");
+    SaveCsv(table, stage / "misfit.csv");
+  });
+  directory.Finish();
+  EXPECT_THAT(Complaint(folder / "run"), HasSubstr("run `lacuna fit` again"));
+}
+
 TEST(Comparison, FindsWhereAndWhenAnErrorOccurs) {
   const TemporaryFolder folder;
   WriteRun(folder / "run", {"a"}, LowMarker);
@@ -165,20 +215,11 @@ TEST(Comparison, FindsWhereAndWhenAnErrorOccurs) {
   EXPECT_THAT(words, HasSubstr("toward −z"));
 }
 
-// The experiment and the recording that the run says it was made from.
-void WriteExperiment(const TemporaryFolder& folder, const CsvTable& misfit) {
-  std::ofstream(folder / "experiment.yaml") << R"(schema_version: 1
-name: e
-output: run
-mesh: {max_volume: 1000 mm^3}
-material: {law: neo_hookean, young_modulus: 0.1 MPa, poisson_ratio: 0.4}
-motion: {time_step: 5 ms}
-recordings:
-  - {name: a, recording: recording, fit_until: 0.795 s,
-     hold: {release: 0.3 s, region: {half_space: {point: [50 mm, 0 mm, 0 mm], normal: [1, 0, 0]}}}}
-)";
-  std::filesystem::create_directory(folder / "recording");
-  std::ofstream(folder / "recording/recording.yaml") << R"(schema_version: 1
+// The recording of this number, with its markers in this order.
+void WriteRecording(const std::filesystem::path& folder, const CsvTable& misfit, int number,
+                    const std::vector<const char*>& names) {
+  std::filesystem::create_directory(folder);
+  std::ofstream(folder / "recording.yaml") << R"(schema_version: 1
 name: a
 length_unit: m
 density: 1000 kg/m^3
@@ -194,16 +235,17 @@ frames:
 fixed: [{name: clamp, half_space: {point: [1 mm, 0 mm, 0 mm], normal: [-1, 0, 0]}}]
 reference: {from: mesh, file: box.off, length_unit: m}
 )";
-  std::ofstream(folder / "recording/box.off")
+  std::ofstream(folder / "box.off")
       << "OFF\n8 12 0\n0 0 0\n0.06 0 0\n0.06 0.02 0\n0 0.02 0\n0 0 0.02\n0.06 0 0.02\n"
          "0.06 0.02 0.02\n0 0.02 0.02\n3 0 2 1\n3 0 3 2\n3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n"
          "3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n";
-  std::ofstream tracks(folder / "recording/tracks.csv");
+  std::ofstream tracks(folder / "tracks.csv");
   tracks.precision(17);
   tracks << "t";
-  for (const char* name : {"root", "left", "right", "tip"})
+  for (const char* name : names)
     for (const char axis : {'x', 'y', 'z'}) tracks << "," << name << "_" << axis;
-  for (int row = 0; row < kFrames * kMarkers; ++row) {
+  for (int k = 0; k < kFrames * kMarkers; ++k) {
+    const int row = number * kFrames * kMarkers + k;
     if (row % kMarkers == 0) tracks << "\n" << misfit[2].values[row];
     for (int axis = 0; axis < 3; ++axis) {
       tracks << ",";
@@ -212,6 +254,30 @@ reference: {from: mesh, file: box.off, length_unit: m}
     }
   }
   tracks << "\n";
+}
+
+// The experiment and the recordings that the run says it was made from. The second recording has
+// the markers in the opposite order.
+void WriteExperiment(const TemporaryFolder& folder, const CsvTable& misfit,
+                     bool has_second = false) {
+  std::ofstream(folder / "experiment.yaml") << R"(schema_version: 1
+name: e
+output: run
+mesh: {max_volume: 1000 mm^3}
+material: {law: neo_hookean, young_modulus: 0.1 MPa, poisson_ratio: 0.4}
+motion: {time_step: 5 ms}
+recordings:
+  - {name: a, recording: recording, fit_until: 0.795 s,
+     hold: {release: 0.3 s, region: {half_space: {point: [50 mm, 0 mm, 0 mm], normal: [1, 0, 0]}}}}
+)";
+  if (has_second) {
+    std::ofstream(folder / "experiment.yaml", std::ios::app)
+        << "  - {name: b, recording: second, fitted: false,\n"
+           "     hold: {release: 0.35 s, region: {half_space: {point: [50 mm, 0 mm, 0 mm],\n"
+           "                                                  normal: [1, 0, 0]}}}}\n";
+    WriteRecording(folder / "second", misfit, 1, {"tip", "right", "left", "root"});
+  }
+  WriteRecording(folder / "recording", misfit, 0, {"root", "left", "right", "tip"});
 }
 
 TEST(Comparison, MarkersHaveNamesAndDistancesIfTheRecordingIsAvailable) {
@@ -284,6 +350,21 @@ TEST(Comparison, ComparesRepeatsWithEachOther) {
   ASSERT_EQ(comparison.record.pairs.size(), 1u);
   EXPECT_NEAR(comparison.record.pairs[0].delay, 0.05, 0.002);
   EXPECT_NEAR(comparison.record.pairs[0].distance, std::sqrt(6.0) * kNoise, 0.7 * kNoise);
+}
+
+// Every marker has its own motion, so that only markers of the same name differ by noise.
+TEST(Comparison, PairsTheMarkersOfRepeatsByName) {
+  const TemporaryFolder folder;
+  const CsvTable misfit = WriteRun(folder / "run", {"a", "b"}, Nothing, EqualNoise, true);
+  WriteExperiment(folder, misfit, true);
+  const ComparisonRecord record = CompareRun(folder / "run").record;
+  EXPECT_THAT(record.notes, testing::IsEmpty());
+  ASSERT_EQ(record.pairs.size(), 1u);
+  EXPECT_NEAR(record.pairs[0].distance, std::sqrt(6.0) * kNoise, 0.7 * kNoise);
+  EXPECT_NEAR(record.pairs[0].delay, 0.05, 0.002);
+  // Numbers alone do not say which markers are the same.
+  std::filesystem::remove(folder / "experiment.yaml");
+  EXPECT_THAT(CompareRun(folder / "run").record.pairs, testing::IsEmpty());
 }
 
 TEST(Comparison, WritesItsFilesAndLeavesTheRunUnchanged) {

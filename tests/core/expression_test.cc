@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 namespace lacuna {
@@ -24,7 +25,7 @@ TEST(Expression, ReadsNumbersAndConstants) {
   EXPECT_EQ(ValueOf(".5"), 0.5);
   EXPECT_EQ(ValueOf(" 1e-3 "), 1e-3);
   EXPECT_EQ(ValueOf("2.E2"), 200);
-  EXPECT_EQ(ValueOf("pi"), M_PI);
+  EXPECT_EQ(ValueOf("pi"), std::numbers::pi);
 }
 
 TEST(Expression, FollowsMathematicalPrecedence) {

@@ -34,13 +34,20 @@ TEST(ReadJsonFile, SaysWhatIsWrongWithAFile) {
   const auto says = [&](const char* problem) {
     return ThrowsMessage<InputError>(AllOf(StartsWith(file.string() + ": "), HasSubstr(problem)));
   };
-  EXPECT_THAT(read, says("cannot be opened for reading"));
+  EXPECT_THAT(read, says("cannot be read: no such file, or no permission"));
   std::ofstream(file) << "{";
   EXPECT_THAT(read, says("is not JSON"));
   std::ofstream(file) << "{}";
   EXPECT_THAT(read, says("'numbers' not found"));
   std::ofstream(file) << R"({"numbers": "three"})";
   EXPECT_THAT(read, says("must be array"));
+
+  const auto read_list = [&] { ReadJsonFile(file, Numbers, "a list of numbers"); };
+  EXPECT_THAT(read_list, says("is not a list of numbers: "));
+  std::ofstream(file) << "{";
+  EXPECT_THAT(read_list, says("is not a list of numbers: "));
+  std::filesystem::remove(file);
+  EXPECT_THAT(read_list, says("cannot be read: no such file"));
 }
 
 }  // namespace

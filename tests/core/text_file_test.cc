@@ -30,7 +30,7 @@ TEST(ReadWholeFile, ErrorNamesTheUnreadableFile) {
     return "it was read";
   };
   EXPECT_EQ(message(folder / "absent"),
-            (folder / "absent").string() + ": cannot be opened for reading");
+            (folder / "absent").string() + ": cannot be read: no such file, or no permission");
   EXPECT_EQ(message(folder / "."), (folder / ".").string() + ": is a folder; expected a file");
 }
 

@@ -32,7 +32,7 @@ TEST(ConcurrentRefits, FindTheSameBitsAsOneAfterTheOther) {
   SilentProgress progress;
   const Calibration fit = FitShortHorizon(problem, problem.Start(), &progress);
   ASSERT_FALSE(fit.estimates.empty()) << fit.message;
-  const LinearisedMisfit misfit = problem.Linearise(fit.parameters, true);
+  const LinearisedMisfit misfit = problem.Linearise(fit.parameters, {.with_jacobian = true});
   ASSERT_TRUE(misfit.usable) << misfit.message;
   // One whose areas are derived from the rest shape once and shared, and one with memory.
   const std::vector<ScoredEffect> effects{

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <numbers>
 
 namespace lacuna {
 namespace {
@@ -20,14 +21,14 @@ TEST(NaturalValue, IsBelievedWhereItIsMet) {
   const auto density = [](const Eigen::Vector3d& x, const Eigen::Vector3d& m,
                           const Eigen::Vector3d& s) {
     return std::exp(-0.5 * (x - m).cwiseQuotient(s).squaredNorm()) /
-           (s.prod() * std::pow(2 * M_PI, 1.5));
+           (s.prod() * std::pow(2 * std::numbers::pi, 1.5));
   };
   double sum = 0;
   constexpr int kSteps = 2000;
   for (int i = 0; i < kSteps; ++i) {
     const double z = 1 - 0.01 * (i + 0.5) / kSteps;  // the posterior is narrow about the pole
     for (int j = 0; j < 16; ++j) {
-      const double angle = 2 * M_PI * j / 16, r = std::sqrt(1 - z * z);
+      const double angle = 2 * std::numbers::pi * j / 16, r = std::sqrt(1 - z * z);
       sum += density(9.80665 * Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), z), mean,
                      deviation) *
              0.01 / 2 / kSteps / 16;

@@ -59,8 +59,8 @@ TEST(HypothesisEvidence, IsThatOfTheLinearModelAtTheBestParameters) {
   const auto fit = [&] {
     const LinearisedMisfit& misfit = hypothesis.misfit;
     return LinearGaussianModel(
-               WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
-               WhitenedRows(misfit.jacobian, misfit, kNoise.correlation_time, false),
+               WhitenedRows(misfit.residual, misfit, {.correlation_time = kNoise.correlation_time}),
+               WhitenedRows(misfit.jacobian, misfit, {.correlation_time = kNoise.correlation_time}),
                hypothesis.priors)
         .FitAll(kNoise.variance);
   };
@@ -206,8 +206,8 @@ TEST(SpaceOfARefit, WeighsTheOtherEffectsBesideIt) {
   ASSERT_EQ(factors.size(), 3);
   const auto evidence = [&] {
     return LinearGaussianModel(
-               WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
-               WhitenedRows(misfit.jacobian, misfit, kNoise.correlation_time, false),
+               WhitenedRows(misfit.residual, misfit, {.correlation_time = kNoise.correlation_time}),
+               WhitenedRows(misfit.jacobian, misfit, {.correlation_time = kNoise.correlation_time}),
                hypothesis.priors)
         .FitAll(kNoise.variance)
         .log_evidence;
@@ -227,8 +227,10 @@ FittedHypothesis AtItsBest(FittedHypothesis hypothesis, const NoiseLevel& noise,
   const LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::VectorXd change =
       LinearGaussianModel(
-          WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only),
-          WhitenedRows(misfit.jacobian, misfit, noise.correlation_time, fitted_only),
+          WhitenedRows(misfit.residual, misfit,
+                       {.correlation_time = noise.correlation_time, .fitted_only = fitted_only}),
+          WhitenedRows(misfit.jacobian, misfit,
+                       {.correlation_time = noise.correlation_time, .fitted_only = fitted_only}),
           hypothesis.priors)
           .FitAll(noise.variance)
           .change;
@@ -294,7 +296,7 @@ class EffectRefitOfACoarseBar : public OfACoarseBar {
   void SetUp() override {
     fit_ = FitFromStart(*problem_, &progress_);
     ASSERT_FALSE(fit_.estimates.empty()) << fit_.message;
-    misfit_ = problem_->Linearise(fit_.parameters, true);
+    misfit_ = problem_->Linearise(fit_.parameters, {.with_jacobian = true});
     ASSERT_TRUE(misfit_.usable) << misfit_.message;
     none_ = {Eigen::MatrixXd(misfit_.residual.size(), 0), {}, 0};
   }

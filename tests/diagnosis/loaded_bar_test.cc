@@ -321,7 +321,8 @@ gripped:
   const CalibrationProblem problem(study, BarMesh({7, 1, 1}, 2));
   const GripMotions grips = MakeGripMotions(problem);
   const Eigen::VectorXd start = problem.Start();
-  const LinearisedMisfit misfit = problem.Linearise(start, true, grips.directions);
+  const LinearisedMisfit misfit =
+      problem.Linearise(start, {.with_jacobian = true, .directions = grips.directions});
   ASSERT_TRUE(misfit.usable) << misfit.message;
   const Eigen::MatrixXd grip_columns =
       misfit.jacobian.rightCols(static_cast<Eigen::Index>(grips.directions.size()));

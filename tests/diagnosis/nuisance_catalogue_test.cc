@@ -70,7 +70,7 @@ TEST(NuisanceCatalogue, MakesTheNuisancesOfARecordingFromItsFrames) {
   WriteBarRecording(folder.Path(), FilmHeldBar({}));
   const PredictionStudy study = ReadBarStudy(folder.Path());
   const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
-  const LinearisedMisfit misfit = problem.Linearise(problem.Start(), /*with_jacobian=*/false);
+  const LinearisedMisfit misfit = problem.Linearise(problem.Start());
   ASSERT_TRUE(misfit.usable) << misfit.message;
   const LinearisedMisfit::Part& part = misfit.parts.front();
   const Eigen::Index frames = static_cast<Eigen::Index>(part.layout.times.size());
@@ -109,7 +109,7 @@ TEST(NuisanceCatalogue, ExtendsAGripLikeAShorterBar) {
   const Eigen::VectorXd values = FitInStages(problem, problem.Start(), &progress).parameters;
   const GripMotions grips = MakeGripMotions(problem);
   ASSERT_EQ(grips.grips.size(), 1u);
-  const LinearisedMisfit misfit = problem.Linearise(values, true);
+  const LinearisedMisfit misfit = problem.Linearise(values, {.with_jacobian = true});
   ASSERT_TRUE(misfit.usable) << misfit.message;
   Eigen::MatrixXd column;
   for (const NuisanceCandidate& nuisance :
@@ -123,7 +123,7 @@ TEST(NuisanceCatalogue, ExtendsAGripLikeAShorterBar) {
   const double length = whole.nodes.row(0).maxCoeff();
   shorter.nodes.row(0) = (kFurther + (1 - kFurther / length) * whole.nodes.row(0).array()).matrix();
   const auto residual_on = [&](const TetMesh& mesh) {
-    return CalibrationProblem(study, mesh).Linearise(values, false).residual;
+    return CalibrationProblem(study, mesh).Linearise(values).residual;
   };
   const Eigen::VectorXd expected = residual_on(shorter) - residual_on(whole);
   ASSERT_EQ(expected.size(), column.rows());
@@ -146,7 +146,7 @@ TEST(NuisanceCatalogue, OfARecordingWithALoadCellHaveItsRowsInTheClockOnly) {
   const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
   const GripMotions grips = MakeGripMotions(problem);
   const LinearisedMisfit misfit =
-      problem.Linearise(problem.Start(), /*with_jacobian=*/true, grips.directions);
+      problem.Linearise(problem.Start(), {.with_jacobian = true, .directions = grips.directions});
   ASSERT_TRUE(misfit.usable) << misfit.message;
   ASSERT_EQ(misfit.parts.size(), 2u);
   const LinearisedMisfit::Part& force = misfit.parts[1];

@@ -30,7 +30,7 @@ StepChange StepChangeOf(const std::map<std::string, std::string>& replaced) {
   // A force holds the bar aside, without which it would not move.
   for (size_t k = 0; k < problem.parameters().size(); ++k)
     if (problem.UnitOf(k) == "N") values[static_cast<Eigen::Index>(k)] = 0.03;
-  const LinearisedMisfit misfit = problem.Linearise(values, /*with_jacobian=*/true);
+  const LinearisedMisfit misfit = problem.Linearise(values, {.with_jacobian = true});
   const std::vector<NuisanceCandidate> nuisances =
       ModelNuisances({problem, values, misfit, GripMotions{}, Eigen::MatrixXd()});
   const auto step = std::find_if(nuisances.begin(), nuisances.end(),
@@ -38,11 +38,10 @@ StepChange StepChangeOf(const std::map<std::string, std::string>& replaced) {
   if (step == nuisances.end()) return {};
   PredictionStudy short_steps = problem.WithEstimatedNoise();
   short_steps.time_step /= 16;
-  const Eigen::VectorXd change = 256.0 / 255 *
-                                 (CalibrationProblem(short_steps, problem.body()->mesh)
-                                      .Linearise(values, /*with_jacobian=*/false)
-                                      .residual -
-                                  misfit.residual);
+  const Eigen::VectorXd change =
+      256.0 / 255 *
+      (CalibrationProblem(short_steps, problem.body()->mesh).Linearise(values).residual -
+       misfit.residual);
   return {change.norm(), (step->columns.col(0) - change).norm(), step->unknown.norm()};
 }
 

@@ -61,7 +61,7 @@ struct PilotsOfBar {
     values.segment<3>(2) = truth.hold_force;
     values[5] = truth.clock;
     moduli = problem.StudyAt(values).effects.front()->Parameters();
-    misfit = problem.Linearise(values, false);
+    misfit = problem.Linearise(values);
     planes = ProposePlanes(problem, values, misfit);
     pilots = RunPilots(problem, values, misfit, {"corotational"});
   }

@@ -61,7 +61,7 @@ struct TwoRecordings {
     const Calibration fit = FitFromStart(*problem, &silent);
     values = fit.parameters;
     const GripMotions grips = MakeGripMotions(*problem);
-    misfit = problem->Linearise(values, true, grips.directions);
+    misfit = problem->Linearise(values, {.with_jacobian = true, .directions = grips.directions});
     const Eigen::MatrixXd grip_columns =
         misfit.jacobian.rightCols(static_cast<Eigen::Index>(grips.directions.size()));
     shared.columns.resize(misfit.residual.size(), 0);

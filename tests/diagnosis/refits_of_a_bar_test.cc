@@ -35,7 +35,7 @@ class RefitsOfABar : public ::testing::Test {
     problem_.emplace(study_, BarMesh({4, 1, 1}, 1));
     fit_ = FitFromStart(*problem_, &progress_);
     ASSERT_FALSE(fit_.estimates.empty()) << fit_.message;
-    ranking_.misfit = problem_->Linearise(fit_.parameters, true);
+    ranking_.misfit = problem_->Linearise(fit_.parameters, {.with_jacobian = true});
     ASSERT_TRUE(ranking_.misfit.usable) << ranking_.misfit.message;
     ranking_.adopted = {Eigen::MatrixXd(ranking_.misfit.residual.size(), 0), {}, 0};
     ranking_.noise = kWhite;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "effects/catalogue.h"
@@ -85,7 +86,7 @@ TEST(ElasticSupport, LiesAgainstTheSideThatFacesIt) {
   const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}), 1000);
   const Eigen::VectorXd position = body.mesh.nodes.reshaped().array() + 0.001;
   const auto total = [&](double degrees) {
-    const double angle = degrees * M_PI / 180;
+    const double angle = degrees * std::numbers::pi / 180;
     const auto support =
         MakeEffect("elastic_support",
                    {{"modulus", 1e5}, {"side_x", std::sin(angle)}, {"side_z", std::cos(angle)}});

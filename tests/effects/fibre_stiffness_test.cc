@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <numbers>
 
 #include "effects/catalogue.h"
 #include "support/one_element.h"
@@ -10,7 +11,7 @@ namespace lacuna {
 namespace {
 
 constexpr double kModulus = 4e4;  // Pa
-constexpr double kAzimuth = 30 * M_PI / 180, kInclination = 20 * M_PI / 180;
+constexpr double kAzimuth = 30 * std::numbers::pi / 180, kInclination = 20 * std::numbers::pi / 180;
 
 std::shared_ptr<const Effect> Fibres(double azimuth, double inclination) {
   return MakeEffect("fibre_stiffness",
@@ -49,7 +50,7 @@ TEST(FibreStiffness, IsTheTransverselyIsotropicSolidOfSmallStrain) {
   };
   const Eigen::Matrix3d pull = 1e-7 * kYoung * Eigen::Vector3d(1, 0, 0).asDiagonal();
   for (const double degrees : {0.0, 35.0, 90.0}) {
-    const double azimuth = degrees * M_PI / 180;
+    const double azimuth = degrees * std::numbers::pi / 180;
     const Eigen::Vector3d a(std::cos(azimuth), std::sin(azimuth), 0);
     const double along = a.dot(isotropic(pull) * a);
     const Eigen::Matrix3d strain =
@@ -70,8 +71,9 @@ TEST(FibreStiffness, IsTheTransverselyIsotropicSolidOfSmallStrain) {
 TEST(FibreStiffness, IsReadFromYaml) {
   const Config config = Config::Parse(
       "type: fibre_stiffness\nmodulus: -5 kPa\nazimuth: 90 deg\ninclination: 0.1 rad\n", "a.yaml");
-  EXPECT_LT((MakeEffect(config)->Parameters() - Eigen::Vector3d(-5e3, M_PI / 2, 0.1)).norm(),
-            1e-12);
+  EXPECT_LT(
+      (MakeEffect(config)->Parameters() - Eigen::Vector3d(-5e3, std::numbers::pi / 2, 0.1)).norm(),
+      1e-12);
   config.RefuseUnknownKeys();
 }
 

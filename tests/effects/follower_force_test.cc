@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "effects/catalogue.h"
@@ -119,7 +120,7 @@ TEST(FollowerForce, KeepsItsTorqueAsTheBarRotates) {
       history.position.reshaped(3, body->NodeCount()) * body->node_mass / body->node_mass.sum();
   const double angle = std::atan2(centre.x(), centre.z());
   const double expected = 0.5 * kForce * kLever * kTime * kTime / inertia;
-  EXPECT_GT(expected, 0.6 * M_PI);
+  EXPECT_GT(expected, 0.6 * std::numbers::pi);
   // The quadrature points represent the centre of the force to within 1 % of the lever.
   EXPECT_NEAR(angle, expected, 0.01 * expected);
 }

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 
 #include "effects/catalogue.h"
@@ -91,7 +92,7 @@ TEST_P(MemoryBranchOf, ConvergesWhenTheBodyIsCompressedAndReleased) {
   const Eigen::VectorXi plate = Eigen::Map<Eigen::VectorXi>(ends[1].data(), ends[1].size());
   const auto motion = [body, plate](double time) {
     Eigen::Matrix3Xd held = body->mesh.nodes(Eigen::all, plate);
-    held.row(0).array() -= 0.008 * (1 - std::cos(2 * M_PI * time / 0.4));
+    held.row(0).array() -= 0.008 * (1 - std::cos(2 * std::numbers::pi * time / 0.4));
     return held;
   };
   const Model model{

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <numbers>
 
 #include "effects/catalogue.h"
 #include "effects/contact_points.h"
@@ -239,7 +240,7 @@ Slide SlideDown(double angle, double friction, double duration, double slip_velo
           (velocity - velocity_at_half) / (duration / 2)};
 }
 
-constexpr double kAngle = 25 * M_PI / 180;
+constexpr double kAngle = 25 * std::numbers::pi / 180;
 
 TEST(PlaneContact, HoldsABlockOnAnInclineBelowTheAngleOfFriction) {
   constexpr double kSlip = 1e-3, kShare = 0.7;  // of the friction that could be had

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <complex>
+#include <numbers>
 
 #include "effects/catalogue.h"
 #include "fem/simulate.h"
@@ -59,10 +60,10 @@ TEST(ViscoelasticBranch, RelaxesExponentiallyInAHeldBar) {
 std::complex<double> ComplexModulus(double omega_tau, int steps) {
   StrainedBody bar(Branch());
   constexpr double kStrain = 0.2;
-  const double time_step = 2 * M_PI * kTau / omega_tau / steps;
+  const double time_step = 2 * std::numbers::pi * kTau / omega_tau / steps;
   std::complex<double> sum = 0;
   for (int n = 1; n <= 4 * steps; ++n) {
-    const double angle = 2 * M_PI * n / steps;
+    const double angle = 2 * std::numbers::pi * n / steps;
     const double stress = SecondStress(&bar, kStrain * std::sin(angle), time_step);
     if (n > 3 * steps) sum += stress * std::polar(1.0, -angle);
   }

@@ -64,8 +64,9 @@ Motions MotionsOf(const std::string& changes, InpDialect dialect, bool with_moti
   const PredictionOptions options = model.Options(nuisance);
   const Model placed = model.PlacedModel(nuisance);
   std::vector<double> frames;
-  for (const int frame : model.item().frames)
-    if (with_motion) frames.push_back(model.item().recording.times[static_cast<size_t>(frame)]);
+  for (const int frame : model.recording().frames)
+    if (with_motion)
+      frames.push_back(model.recording().recording.times[static_cast<size_t>(frame)]);
   PortableModel described = DescribeModel(placed, mesh, options, frames, {{"clamp"}, {}});
   described.run = "silicone_beam";
 

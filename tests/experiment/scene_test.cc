@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -86,7 +87,7 @@ TEST(BendScene, BendsInThePlaneOfItsForceAndIsHeldAtItsClamp) {
     const double angle =
         std::atan2(deflection.y(), deflection.z()) - std::atan2(force.y(), force.z());
     // The coarse mesh is not symmetric: a few per cent of stiffness.
-    EXPECT_NEAR(std::remainder(angle, 2 * M_PI), 0, 0.05) << "frame " << k;
+    EXPECT_NEAR(std::remainder(angle, 2 * std::numbers::pi), 0, 0.05) << "frame " << k;
   }
   const Recording recording = ExpectReadable(scene, motion, folder / "bend");
   EXPECT_EQ(recording.object.fixed.size(), 1u);
@@ -103,7 +104,7 @@ TEST(TwistScene, TurnsTheChuckByTheStatedAngleAndTheMiddleByHalf) {
   const Eigen::Vector3d centre(0.1, 0.015, 0.015);
   for (size_t k = 0; k < motion.times.size(); ++k) {
     EXPECT_EQ(motion.positions[k](Eigen::all, clamp), RestOf(motion, clamp));
-    const double angle = 0.5 * M_PI * std::min(1.0, motion.times[k] / 0.6);
+    const double angle = 0.5 * std::numbers::pi * std::min(1.0, motion.times[k] / 0.6);
     const Eigen::AngleAxisd turn(angle, Eigen::Vector3d::UnitX());
     const Eigen::Matrix3Xd turned =
         (turn.toRotationMatrix() * (RestOf(motion, chuck).colwise() - centre)).colwise() + centre;
@@ -119,13 +120,13 @@ TEST(TwistScene, TurnsTheChuckByTheStatedAngleAndTheMiddleByHalf) {
     const Eigen::Vector3d now = motion.positions.back().col(i) - centre;
     const double angle = std::atan2(rest.y() * now.z() - rest.z() * now.y(),
                                     rest.y() * now.y() + rest.z() * now.z());
-    const double expected = 0.5 * M_PI * (rest.x() + 0.1 - 0.008) / 0.084;
+    const double expected = 0.5 * std::numbers::pi * (rest.x() + 0.1 - 0.008) / 0.084;
     largest_error = std::max(largest_error, std::abs(angle - expected));
     ++checked;
   }
   ASSERT_GT(checked, 20);
   // Warping of the section and its not being quite at rest: some degrees.
-  EXPECT_LT(largest_error, 8 * M_PI / 180);
+  EXPECT_LT(largest_error, 8 * std::numbers::pi / 180);
   const Recording recording = ExpectReadable(scene, motion, folder / "twist");
   EXPECT_EQ(recording.object.fixed.size(), 1u) << "the clamp is told, the moved chuck is not";
   EXPECT_TRUE(recording.object.grips.empty());
@@ -194,7 +195,7 @@ TEST(Scene, RecordsTheTorqueOfAGripThatTurns) {
   EXPECT_NEAR(reading.values(0, reading.values.cols() - 1), last[3], 5e-4);
   const RecordedGrip& grip = recording.object.grips.at(0);
   const Eigen::AngleAxisd turn(MotionAt(grip, recording.times.back()).linear());
-  EXPECT_NEAR(turn.angle(), M_PI / 6, 1e-9);
+  EXPECT_NEAR(turn.angle(), std::numbers::pi / 6, 1e-9);
 }
 
 // What a body that falls has, J.

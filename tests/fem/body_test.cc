@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <functional>
+#include <numbers>
 #include <set>
 
 #include "core/error.h"
@@ -138,7 +139,7 @@ TEST(ElementSchedule, SupportsANodeInMoreChunksThanThereAreColours) {
   fan.nodes.col(kSlivers) << 0, 0, 0;
   fan.nodes.col(kSlivers + 1) << 0, 0, 1;
   for (int k = 0; k < kSlivers; ++k) {
-    const double angle = 2 * M_PI * k / kSlivers;
+    const double angle = 2 * std::numbers::pi * k / kSlivers;
     fan.nodes.col(k) << std::cos(angle), std::sin(angle), 0.5;
     fan.tets.col(k) << kSlivers, k, (k + 1) % kSlivers, kSlivers + 1;
   }

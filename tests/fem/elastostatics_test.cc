@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "core/error.h"
@@ -274,7 +275,7 @@ TEST(Equilibrium, FollowsALargeMotionOfAGrip) {
   const Eigen::VectorXi end =
       NodesWhere(mesh, [](const Eigen::Vector3d& x) { return x[0] > 0.1 - 1e-9; });
   const Eigen::Matrix3d rotation =
-      Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
+      Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
   const Eigen::Matrix3Xd places =
       (rotation * mesh.nodes(Eigen::all, end)).colwise() + Eigen::Vector3d(0.1, 0, 0);
   model.grips.push_back({end, [places](double) { return places; }});

@@ -206,6 +206,24 @@ TEST(Calibration, EndsAtTheBoundIfItsOnlyParameterWouldFitBeyondIt) {
   }
 }
 
+// In SI units the value and its bounds differ by less than a millionth.
+TEST(Calibration, ASmallParameterOnALogarithmicScaleIsNotAtItsBound) {
+  const auto verdict = [](double wanted) {
+    const auto predict = [&](const Eigen::VectorXd& at, bool) {
+      Prediction prediction{
+          true, "", Eigen::VectorXd::Constant(3, 100 * std::log(at[0] / wanted)), {}};
+      prediction.jacobian = Eigen::MatrixXd::Constant(3, 1, 100 / at[0]);
+      return prediction;
+    };
+    return Calibrate({{.name = "a", .start = 1e-6, .min = 1e-7, .max = 1e-5, .log_scale = true}},
+                     predict)
+        .estimates.at(0)
+        .verdict;
+  };
+  EXPECT_EQ(verdict(2e-7), ParameterEstimate::Verdict::kPinnedDown);
+  EXPECT_EQ(verdict(5e-8), ParameterEstimate::Verdict::kAtBound);
+}
+
 TEST(Calibration, ApproachesAnOpenBoundInParts) {
   const CalibratedParameter parameter{
       .name = "a", .start = 0.5, .min = 0, .max = 1, .open_max = true};

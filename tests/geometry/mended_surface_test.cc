@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <random>
 
 #include "geometry/surface_check.h"
@@ -32,14 +33,6 @@ void Turn(TriMesh* mesh, const std::vector<int>& triangles) {
   for (const int t : triangles) std::swap(mesh->triangles(1, t), mesh->triangles(2, t));
 }
 
-TriMesh Both(const TriMesh& a, const TriMesh& b) {
-  TriMesh both{Eigen::Matrix3Xd(3, a.vertices.cols() + b.vertices.cols()),
-               Eigen::Matrix3Xi(3, a.triangles.cols() + b.triangles.cols())};
-  both.vertices << a.vertices, b.vertices;
-  both.triangles << a.triangles, b.triangles.array() + static_cast<int>(a.vertices.cols());
-  return both;
-}
-
 void ExpectTheBox(const MendedSurface& mended) {
   const SurfaceReport report = CheckSurface(mended.mesh);
   EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
@@ -49,7 +42,7 @@ void ExpectTheBox(const MendedSurface& mended) {
 
 TEST(MendSurface, LeavesASoundSurfaceAsItIs) {
   for (const TriMesh& sound : {WholeBox(), OrganicSurface(2), FlatSheet(1, 1, 3, 2),
-                               Both(WholeBox(), Icosphere(0.1, 1))}) {
+                               Together(WholeBox(), Icosphere(0.1, 1))}) {
     const MendedSurface mended = MendSurface(sound);
     EXPECT_EQ(mended.mesh.vertices, sound.vertices);
     EXPECT_EQ(mended.mesh.triangles, sound.triangles);
@@ -123,7 +116,7 @@ TEST(MendSurface, LeavesTheWallOfACavityAndOneSidedSurfaces) {
   TriMesh wall = Icosphere(0.3, 1);
   wall.vertices.colwise() += Eigen::Vector3d(3, 1, 1);
   wall.triangles.row(1).swap(wall.triangles.row(2));
-  const TriMesh hollow = Both(WholeBox(), wall);
+  const TriMesh hollow = Together(WholeBox(), wall);
   const MendedSurface mended = MendSurface(hollow);
   EXPECT_EQ(mended.mesh.triangles, hollow.triangles);
   EXPECT_THAT(mended.notes, IsEmpty());
@@ -133,7 +126,7 @@ TEST(MendSurface, LeavesTheWallOfACavityAndOneSidedSurfaces) {
   std::vector<std::array<int, 3>> triangles;
   constexpr int kSquares = 6;
   for (int i = 0; i < kSquares; ++i) {
-    const double angle = 2 * M_PI * i / kSquares, twist = angle / 2;
+    const double angle = 2 * std::numbers::pi * i / kSquares, twist = angle / 2;
     const Eigen::Vector3d out(std::cos(angle), std::sin(angle), 0);
     const Eigen::Vector3d across =
         std::cos(twist) * Eigen::Vector3d::UnitZ() + std::sin(twist) * out;

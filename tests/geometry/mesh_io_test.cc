@@ -120,7 +120,7 @@ TEST(ReadTriMesh, RefusesIndicesOutOfRange) {
 
 TEST(ReadTriMesh, ErrorNamesAFileThatIsAbsentEmptyOrOfUnknownFormat) {
   const TemporaryFolder folder;
-  EXPECT_THAT(TriFailure(folder / "none.ply"), HasSubstr("none.ply: cannot be opened"));
+  EXPECT_THAT(TriFailure(folder / "none.ply"), HasSubstr("none.ply: cannot be read"));
   EXPECT_THAT(TriFailure(Write(folder / "a.xyz", "0 0 0")),
               AllOf(HasSubstr("a.xyz"), HasSubstr("expected .ply, .obj, .stl or .off")));
   for (const char* name : {"e.ply", "e.obj", "e.stl", "e.off"}) {
@@ -373,7 +373,7 @@ TEST(ReadTetMesh, RefusesOtherVersionsOfGmsh) {
 
 TEST(ReadTetMesh, ErrorNamesAFileThatIsAbsentOrOfUnknownFormat) {
   const TemporaryFolder folder;
-  EXPECT_THAT(TetFailure(folder / "none.msh"), HasSubstr("none.msh: cannot be opened"));
+  EXPECT_THAT(TetFailure(folder / "none.msh"), HasSubstr("none.msh: cannot be read"));
   EXPECT_THAT(TetFailure(folder / "a.vtu"), HasSubstr("expected .msh"));
   EXPECT_THAT(TetFailure(Write(folder / "lonely.ele", kEle)), HasSubstr("lonely.node"));
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numbers>
 
 #include "geometry/rotation.h"
 
@@ -54,7 +55,7 @@ TEST(RigidFit, DoesNotRotateAboutALine) {
   EXPECT_LT(Difference(FitRigidMotion(points, points).motion, Eigen::Isometry3d::Identity()),
             1e-12);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitY();
-  const Eigen::Matrix3d quarter = RotationBy({0, 0, M_PI / 2});
+  const Eigen::Matrix3d quarter = RotationBy({0, 0, std::numbers::pi / 2});
   const RigidFit fit = FitRigidMotion(points, quarter * points);
   EXPECT_EQ(fit.span, 1);
   EXPECT_LT((fit.motion.linear() - quarter).norm(), 1e-12);

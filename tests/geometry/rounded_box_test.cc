@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "geometry/surface_check.h"
 
@@ -20,7 +21,8 @@ TEST(RoundedBox, BoundsTheVolumeOfABoxWithRoundedEdges) {
     const double expected =
         inner.prod() +
         2 * (inner[0] * inner[1] + inner[1] * inner[2] + inner[2] * inner[0]) * radius +
-        M_PI * inner.sum() * radius * radius + 4.0 / 3 * M_PI * std::pow(radius, 3);
+        std::numbers::pi * inner.sum() * radius * radius +
+        4.0 / 3 * std::numbers::pi * std::pow(radius, 3);
     EXPECT_NEAR(report.volume, expected, 0.01 * expected) << radius;  // chords of the arcs
     const Eigen::AlignedBox3d box = BoundingBox(mesh.vertices);
     EXPECT_LT((box.sizes() - size).norm(), 1e-12);

@@ -34,28 +34,10 @@ std::string FailureOf(const std::function<void()>& action) {
   return "";
 }
 
-TEST(ThickenSheet, MakesAClosedBodyOfTheRightVolume) {
-  const ThickSheet thick = ThickenSheet(FlatSheet(0.3, 0.1, 12, 4), 0.002);
-  const SurfaceReport report = CheckSurface(thick.surface);
-  EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
-  EXPECT_EQ(report.euler_characteristic, 2);
-  EXPECT_NEAR(report.volume, 0.3 * 0.1 * 0.002, 1e-17);  // to rounding
-}
-
-TEST(ThickenSheet, MapsEachVertexToTheSheet) {
-  const TriMesh sheet = HalfCylinder(0.5, 20);
-  const ThickSheet thick = ThickenSheet(sheet, 0.02);
-  ASSERT_EQ(thick.origin.size(), 2 * sheet.vertices.cols());
-  for (Eigen::Index v = 0; v < thick.origin.size(); ++v) {
-    EXPECT_NEAR((thick.surface.vertices.col(v) - sheet.vertices.col(thick.origin(v))).norm(), 0.01,
-                1e-15);
-  }
-}
-
-TEST(ThickenSheet, PutsTheMaterialOnTheRequestedSide) {
+TEST(ThickenToTets, PutsTheMaterialOnTheRequestedSide) {
   const TriMesh sheet = FlatSheet(1, 1, 2, 2);
   const auto heights = [&](SheetPosition position) {
-    const Eigen::VectorXd z = ThickenSheet(sheet, 0.1, position).surface.vertices.row(2);
+    const Eigen::VectorXd z = ThickenToTets(sheet, 0.1, 1, position).nodes.row(2);
     return Eigen::Vector2d(z.minCoeff(), z.maxCoeff());
   };
   EXPECT_EQ(heights(SheetPosition::kMiddle), Eigen::Vector2d(-0.05, 0.05));
@@ -72,6 +54,7 @@ TEST(ThickenToTets, FillsTheSheetWithConformingTets) {
   // If the diagonals of neighbouring prisms disagreed, cracks would add faces to the boundary.
   const SurfaceReport report = CheckSurface(ExtractBoundary(mesh).surface);
   EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
+  EXPECT_EQ(report.euler_characteristic, 2);
   EXPECT_EQ(report.triangles, 2 * (2 * 12 * 4) + 2 * 3 * 2 * (12 + 4));
 }
 
@@ -89,21 +72,23 @@ TEST(ThickenToTets, StacksItsNodesByLevels) {
   }
 }
 
-TEST(ThickenSheet, RefusesInvalidSheetsWithTheReason) {
-  EXPECT_THAT(FailureOf([] { ThickenSheet(Icosphere(1, 1), 0.1); }), HasSubstr("closed"));
+TEST(ThickenToTets, RefusesInvalidSheetsWithTheReason) {
+  EXPECT_THAT(FailureOf([] { ThickenToTets(Icosphere(1, 1), 0.1, 1); }), HasSubstr("closed"));
 
   TriMesh twisted = FlatSheet(1, 1, 2, 2);
   std::swap(twisted.triangles(0, 0), twisted.triangles(1, 0));
-  EXPECT_THAT(FailureOf([&] { ThickenSheet(twisted, 0.1); }), HasSubstr("opposite orientations"));
+  EXPECT_THAT(FailureOf([&] { ThickenToTets(twisted, 0.1, 1); }),
+              HasSubstr("opposite orientations"));
 
   const TriMesh book = MeshOf({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
                               {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}});
-  EXPECT_THAT(FailureOf([&] { ThickenSheet(book, 0.1); }), HasSubstr("more than two triangles"));
+  EXPECT_THAT(FailureOf([&] { ThickenToTets(book, 0.1, 1); }),
+              HasSubstr("more than two triangles"));
 }
 
-TEST(ThickenSheet, RefusesAThicknessBeyondTheCurvature) {
-  EXPECT_EQ(FailureOf([] { ThickenSheet(HalfCylinder(0.5, 20), 0.2); }), "");
-  EXPECT_THAT(FailureOf([] { ThickenSheet(HalfCylinder(0.5, 20), 1.2); }),
+TEST(ThickenToTets, RefusesAThicknessBeyondTheCurvature) {
+  EXPECT_EQ(FailureOf([] { ThickenToTets(HalfCylinder(0.5, 20), 0.2, 1); }), "");
+  EXPECT_THAT(FailureOf([] { ThickenToTets(HalfCylinder(0.5, 20), 1.2, 1); }),
               HasSubstr("bends too sharply"));
 }
 

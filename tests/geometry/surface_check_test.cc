@@ -23,14 +23,6 @@ TriMesh Without(const TriMesh& mesh, const std::vector<int>& dropped) {
   return {mesh.vertices, mesh.triangles(Eigen::all, kept)};
 }
 
-TriMesh Together(const TriMesh& a, const TriMesh& b) {
-  TriMesh both{Eigen::Matrix3Xd(3, a.vertices.cols() + b.vertices.cols()),
-               Eigen::Matrix3Xi(3, a.triangles.cols() + b.triangles.cols())};
-  both.vertices << a.vertices, b.vertices;
-  both.triangles << a.triangles, (b.triangles.array() + static_cast<int>(a.vertices.cols()));
-  return both;
-}
-
 TEST(CheckSurface, FindsNoFaultInASphere) {
   const SurfaceReport report = CheckSurface(Icosphere(0.1, 3));
   EXPECT_TRUE(report.BoundsVolume());

@@ -81,6 +81,8 @@ class PythonModule(unittest.TestCase):
                                           table[f"measured_{name}_m"])
             np.testing.assert_allclose((motion.predicted - motion.measured)[:, :, axis].ravel(),
                                        table[f"difference_{name}_m"], rtol=0, atol=1e-15)
+        np.testing.assert_array_equal(motion.sigma.ravel(), table["sigma_m"])
+        self.assertEqual(motion.sigma.shape, (41, 8))
         with self.assertRaises(IndexError):
             self.run_.model.motion(1)
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 #include "paper/drop_figure.h"
@@ -39,10 +40,10 @@ SceneMotion MadeUpBounce() {
       *lowest = 0.01 * (1 - time / kTouch);
     } else if (time < kLeave) {
       *lowest = -1e-5;
-      *stretch -= 0.12 * std::sin(M_PI * (time - kTouch) / (kLeave - kTouch));
+      *stretch -= 0.12 * std::sin(std::numbers::pi * (time - kTouch) / (kLeave - kTouch));
     } else {
       const double flight = time - kLeave;
-      *stretch += 0.02 * std::sin(2 * M_PI * 80 * flight);
+      *stretch += 0.02 * std::sin(2 * std::numbers::pi * 80 * flight);
       // The centre flies on a parabola, whatever the swing.
       *lowest = 0.05 + 0.6 * flight - 0.5 * kGravity * flight * flight - 0.05 * *stretch;
     }

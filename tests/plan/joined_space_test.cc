@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
 
 #include "diagnosis/projected_hypotheses.h"
 #include "diagnosis/synthetic_space.h"
@@ -100,6 +102,55 @@ TEST(JoinedSpace, DrawsFromThePredictiveDistribution) {
                   6 * deviation * std::sqrt(spread(j, j)) / std::sqrt(kDraws))
           << k << " " << j;
   }
+}
+
+// The recordings say that the effect, which can only be positive, is absent. Its size and a
+// parameter that compensates for it have the means of the truncated normal distribution, and the
+// size is hardly ever 0. The planned recording shows both without noise that counts.
+TEST(JoinedSpace, DrawsPositiveAmountsFromTheTruncatedPosterior) {
+  constexpr int kDrag = SyntheticSpace::kBase;
+  SyntheticSpace first;
+  first.priors[kDrag].positive = true;
+  first.columns.col(0) += first.Of("drag");
+  const HypothesisSpace now = SpaceOfRivals(
+      first.With(SyntheticSpace::Noise(2) + 3 * first.Of("drag")), {"drag", "mass_damping"});
+  PlannedColumns planned{Eigen::MatrixXd::Zero(SyntheticSpace::kRows, SyntheticSpace::kBase),
+                         Eigen::MatrixXd(SyntheticSpace::kRows, 0),
+                         {},
+                         Eigen::MatrixXd::Zero(SyntheticSpace::kRows, 2)};
+  planned.parameters.col(0) = 1e4 * first.Of("fibres");
+  planned.variants.col(0) = 1e4 * first.Of("clock");
+  const JoinedSpace space(now, planned);
+  const FoundEffect drag{"drag", {kDrag}, Eigen::VectorXd::Zero(1)};
+
+  const std::vector<int> known = {0, 1, kDrag}, shown = {0, kDrag};
+  Eigen::Matrix3d precision = now.model.products()(known, known);
+  precision(2, 2) += 1.0 / (20 * 20);
+  const Eigen::Matrix3d posterior = precision.inverse();
+  const Eigen::Vector3d mean = -posterior * now.model.toward()(known);
+  const double deviation = std::sqrt(posterior(2, 2)), z = mean[2] / deviation;
+  EXPECT_LT(z, 0);
+  const double density = std::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
+  const double size = mean[2] + deviation * density / (0.5 * std::erfc(-z / std::numbers::sqrt2));
+  const double parameter = mean[0] + posterior(0, 2) / posterior(2, 2) * (size - mean[2]);
+
+  const Eigen::Matrix2d products =
+      (space.joined().model.products() - now.model.products())(shown, shown);
+  constexpr int kDraws = 4000;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  int absent = 0;
+  for (int k = 0; k < kDraws; ++k) {
+    const Eigen::VectorXd drawn = space.DrawToward(drag, 7, static_cast<uint64_t>(k));
+    const Eigen::Vector2d amounts =
+        -products.inverse() * (drawn - now.model.toward())(shown).eval();
+    sum += amounts;
+    absent += amounts[1] < 1e-3 * deviation;
+    EXPECT_GT(amounts[1], -1e-2 * deviation);
+  }
+  // Four standard errors; neither amount spreads more than without the truncation.
+  EXPECT_NEAR(sum[1] / kDraws, size, 4 * deviation / std::sqrt(kDraws));
+  EXPECT_NEAR(sum[0] / kDraws, parameter, 4 * std::sqrt(posterior(0, 0) / kDraws));
+  EXPECT_LT(absent, kDraws / 50);
 }
 
 // A column of its own without a prior takes everything that it can explain.

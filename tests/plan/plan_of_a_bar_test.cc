@@ -144,6 +144,17 @@ class PlanOfABar : public ::testing::Test {
     EXPECT_EQ(outcome.at("experiment"), "");
   }
 
+  // A diagnosis that does not belong to the fit is not denied.
+  void ExpectAnotherDiagnosisIsNotUsed() const {
+    std::ofstream(Run() / "diagnosis/diagnosis.json", std::ios::app) << "\n";
+    SilentProgress silent;
+    EXPECT_THAT([&] { RunPlan(Run(), {}, &silent); },
+                ThrowsMessage<InputError>(HasSubstr("is of an earlier fit")));
+    std::filesystem::remove_all(Run() / "diagnosis");
+    EXPECT_THAT([&] { RunPlan(Run(), {}, &silent); },
+                ThrowsMessage<InputError>(HasSubstr("has not been diagnosed")));
+  }
+
   TemporaryFolder folder_;
 };
 
@@ -213,6 +224,7 @@ TEST_F(PlanOfABar, PrefersWhatPartsTheRivals) {
   ExpectPlayable(kept);
   ExpectFailuresAreSaid();
   ExpectThePlanIsKeptWithoutItsExperiment();
+  ExpectAnotherDiagnosisIsNotUsed();
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "plan/planned_bar.h"
+#include "scan/measured_force.h"
 #include "scan/recorded_grip.h"
 
 namespace lacuna {
@@ -57,6 +58,38 @@ TEST_F(PlannedRecordingOfABar, LastsLongerWithTheSameSpacing) {
   for (size_t k = 1; k < times.size(); ++k) EXPECT_NEAR(times[k] - times[k - 1], 0.01, 1e-9);
   protocol.duration = 0.01;
   EXPECT_EQ(ErrorOf(protocol), "");  // the frames before the release are still there
+}
+
+// The clamp moves at a steady velocity until the last frame. Then it comes to rest within a spacing
+// of its path, instead of swinging back until the new end.
+TEST_F(PlannedRecordingOfABar, RestsInTheLastPoseAndKeepsTheLastForceWhereItLastsLonger) {
+  RecordedObject& object = bar_.study.recordings[0].recording.object;
+  object.fixed.clear();
+  const double last = 0.01 * (kFrames - 1), spacing = last / 10;
+  RecordedGrip grip;
+  grip.region = {"clamp", HalfSpaceRegion{{0.002, 0, 0}, -Eigen::Vector3d::UnitX()}};
+  grip.motion = GripMotion::kGiven;
+  grip.times = Eigen::VectorXd::LinSpaced(11, 0, last);
+  grip.displacements = Eigen::Matrix3Xd::Zero(3, 11);
+  grip.displacements.row(1) = 0.1 * grip.times.transpose();
+  object.grips = {grip};
+  MeasuredForce force;
+  force.name = "pull";
+  force.times = Eigen::Vector2d(0, last);
+  force.forces = Eigen::Matrix3Xd::Zero(3, 2);
+  force.forces(2, 1) = 0.5;
+  object.forces = {force};
+  Protocol protocol = Named("longer");
+  protocol.duration = 2;
+  const PlannedRecording planned = Plan(protocol);
+  const RecordedObject& made = planned.item.recording.object;
+  const double end = planned.item.recording.times.back();
+  for (int k = 0; k <= 50; ++k) {
+    const double time = last + spacing + k * (end - last - spacing) / 50;
+    EXPECT_NEAR(MotionAt(made.grips.at(0), time).translation().y(), 0.1 * last, 1e-12) << time;
+  }
+  EXPECT_EQ(made.forces.at(0).times[2], end);
+  EXPECT_EQ(ForceAt(made.forces.at(0), end).z(), 0.5);
 }
 
 TEST_F(PlannedRecordingOfABar, TurnsTheClampAndTheHandButNotGravity) {
@@ -117,6 +150,23 @@ TEST_F(PlannedRecordingOfABar, HasFurtherMarkersFarFromTheOthers) {
   EXPECT_THAT(ErrorOf(protocol), HasSubstr("has room for"));
 }
 
+// What is written and fitted are markers: of one noise, at places known to place_deviation.
+TEST_F(PlannedRecordingOfABar, IsOneOfMarkersWhereTrackedPointsWereRecorded) {
+  Recording& recorded = bar_.study.recordings[0].recording;
+  PointFrames tracked;
+  tracked.tracked = true;
+  recorded.frames = tracked;
+  recorded.markers.weights.assign(recorded.times.size(), Eigen::VectorXd::Constant(kMarkers, 2));
+  recorded.instrument.subset = 0.002;
+  bar_.study.place_deviation_is_given = false;
+  const PredictedRecording& item = bar_.study.recordings[0];
+  ASSERT_EQ(PlaceDeviation(bar_.study, item, 1e-5), 1e-5);
+  const PredictedRecording planned = Plan(Named("again")).item;
+  EXPECT_EQ(PlaceDeviation(bar_.study, planned, 1e-5), bar_.study.place_deviation);
+  EXPECT_TRUE(planned.recording.markers.weights.empty());
+  EXPECT_EQ(planned.recording.instrument.subset, 0.002);
+}
+
 // A recording that was made as a plan says has markers with such names already.
 TEST_F(PlannedRecordingOfABar, GivesFurtherMarkersNamesThatAreNotTaken) {
   Markers& markers = bar_.study.recordings[0].recording.markers;
@@ -165,6 +215,23 @@ TEST(PlannedRecordingAboveATable, DoesNotMoveTheClampThroughIt) {
     EXPECT_THAT(problem.what(), HasSubstr("clamp would be"));
     EXPECT_THAT(problem.what(), HasSubstr("mm behind the plane"));
   }
+}
+
+// The lower edge of the clamp lies 1 mm behind the plane that the model has.
+TEST(PlannedRecordingAboveATable, LetsTheClampBeAsDeepAsItWasRecorded) {
+  const std::map<std::string, std::string> with_table = {
+      {"  - {type: mass_damping, alpha: 1 1/s}\n",
+       "  - {type: mass_damping, alpha: 1 1/s}\n"
+       "  - {type: plane_contact, stiffness: 100 MPa/m, offset: -9 mm}\n"}};
+  const PlannedBar bar(with_table);
+  Protocol protocol;
+  protocol.name = "again";
+  protocol.recording = bar.Name();
+  EXPECT_NO_THROW(PlanRecording(protocol, bar.study, bar.mesh));
+  protocol.shake = Protocol::Shake{{0, 0, 0.004}, 5};
+  EXPECT_NO_THROW(PlanRecording(protocol, bar.study, bar.mesh));
+  protocol.shake->amplitude.z() = -0.004;
+  EXPECT_THROW(PlanRecording(protocol, bar.study, bar.mesh), InputError);
 }
 
 }  // namespace

@@ -32,12 +32,10 @@ TEST(RivalsOf, AreTheEffectsAmongTheMostProbableHypotheses) {
       Probable(Kind::kNuisance, {"mesh"}, 0.12), Probable(Kind::kPair, {"drag", "gravity"}, 0.05),
       Probable(Kind::kEffect, {"pressure"}, 0.03)};
   const std::vector<PlannedRival> rivals = RivalsOf(diagnosis);
-  ASSERT_EQ(rivals.size(), 3u);
+  ASSERT_EQ(rivals.size(), 2u);  // gravity is kept in a pair only
   EXPECT_EQ(rivals[0].effect, "mass_damping");
   EXPECT_EQ(rivals[1].effect, "drag");
   EXPECT_EQ(rivals[1].probability, 0.30);
-  EXPECT_EQ(rivals[2].effect, "gravity");  // of the pair, without a probability of its own
-  EXPECT_EQ(rivals[2].probability, 0);
 }
 
 // A nuisance beside an effect is not to be decided upon.
@@ -53,23 +51,50 @@ TEST(RivalsOf, AreEffectsWithOrWithoutNuisances) {
   EXPECT_EQ(rivals[1].effect, "gravity");
 }
 
-TEST(MakePlan, SaysThatNothingIsLeftToBeDecided) {
+// Why there is no plan for a diagnosis that has left these hypotheses.
+std::string WhyNoPlan(const std::vector<HypothesisProbability>& probabilities) {
   const PlannedBar bar;
   FittedRun fitted;
   fitted.study = bar.study;
   fitted.mesh = bar.mesh;
   DiagnosisRecord diagnosis;
-  // With or without an error of the clock, drag is missing.
-  diagnosis.decision.probabilities = {Probable(Kind::kEffect, {"drag", "clock"}, 0.6),
-                                      Probable(Kind::kEffect, {"drag"}, 0.4),
-                                      Probable(Kind::kNuisance, {"clock"}, 0)};
+  diagnosis.decision.probabilities = probabilities;
   SilentProgress progress;
   try {
     MakePlan({fitted, diagnosis, {}}, {}, &progress);
-    ADD_FAILURE() << "a plan without rivals";
   } catch (const InputError& problem) {
-    EXPECT_THAT(problem.what(), HasSubstr("has left no rivals"));
+    return problem.what();
   }
+  return "";
+}
+
+TEST(MakePlan, SaysThatNothingIsLeftToBeDecided) {
+  // With or without an error of the clock, drag is missing.
+  EXPECT_THAT(
+      WhyNoPlan({Probable(Kind::kEffect, {"drag", "clock"}, 0.6),
+                 Probable(Kind::kEffect, {"drag"}, 0.4), Probable(Kind::kNuisance, {"clock"}, 0)}),
+      HasSubstr("has left no rivals"));
+}
+
+// A plan for single effects would give both partners the same probability.
+TEST(MakePlan, RefusesPairsOfEffects) {
+  EXPECT_THAT(WhyNoPlan({Probable(Kind::kPair, {"drag", "gravity"}, 0.7),
+                         Probable(Kind::kPair, {"pressure", "drag"}, 0.3)}),
+              ::testing::AllOf(HasSubstr("drag with gravity, pressure with drag"),
+                               HasSubstr("add drag, which all that it keeps have in common")));
+  EXPECT_THAT(WhyNoPlan({Probable(Kind::kPair, {"drag", "gravity"}, 0.6),
+                         Probable(Kind::kEffect, {"pressure"}, 0.4)}),
+              HasSubstr("add one of them"));
+}
+
+TEST(PlanReport, HasNoTableWhereNoRecordingCanBeMade) {
+  PlanRecord plan;
+  plan.rivals = {{"one", "the first loss", 0.6, 0.01}, {"two", "the second loss", 0.4, 0.01}};
+  PlannedOutcome& outcome = plan.outcomes.emplace_back();
+  outcome.name = "harder";
+  outcome.message = "the bar leaves the room";
+  EXPECT_EQ(PlanReport(plan), PlanSummary(plan));
+  EXPECT_THAT(PlanReport(plan), HasSubstr("\"harder\" cannot be made: the bar leaves"));
 }
 
 // Two recordings of which neither separates the rivals.
@@ -83,13 +108,11 @@ TEST(PlanSummary, NamesRivalsThatNoRecordingSeparates) {
     outcome.probability = 0.14;
     outcome.pairs = {{"one", "two", 0.5, lambda}};
   }
-  EXPECT_FALSE(plan.IsSeparable());
   std::string text = PlanSummary(plan);
   std::replace(text.begin(), text.end(), '\n', ' ');
   EXPECT_THAT(text, HasSubstr("None of them tells apart the first loss and the second loss (λ at "
                               "most 3.2); λ = 12 is needed."));
   plan.outcomes.back().pairs[0].lambda_then = 15;
-  EXPECT_TRUE(plan.IsSeparable());
   EXPECT_THAT(PlanSummary(plan), ::testing::Not(HasSubstr("None of them tells")));
 }
 

@@ -68,6 +68,17 @@ TEST_F(ProtocolReader, NamesWhatIsWrongAndWhere) {
               HasSubstr("protocols[1].name: \"a\" is already the name of another"));
   EXPECT_THAT(ErrorOf("schema_version: 1\nprotocols:\n  - {name: a, recording: baa}\n"),
               HasSubstr("has no recording \"baa\""));
+  EXPECT_THAT(ErrorOf("schema_version: 1\nprotocols:\n  - {name: a, recording: baa}\n"),
+              HasSubstr("its recordings: " + bar_.Name()));
+  EXPECT_THAT(ErrorOf("schema_version: 1\n"), HasSubstr("protocols: is absent"));
+  EXPECT_THAT(ErrorOf("schema_version: 1\nprotocols:\n  - {name: a b}\n  - {name: a_b}\n"),
+              HasSubstr("protocols[1].name: \"a_b\" would have the same folder, a_b, as \"a b\""));
+  const auto turned_by = [](const std::string& angle) {
+    return "schema_version: 1\nprotocols:\n  - {name: a, turn: {axis: [0, 0, 1], angle: " + angle +
+           "}}\n";
+  };
+  EXPECT_EQ(ErrorOf(turned_by("-180 deg")), "");
+  EXPECT_THAT(ErrorOf(turned_by("190 deg")), HasSubstr("from -180 deg to 180 deg"));
   EXPECT_THAT(ErrorOf("schema_version: 1\nprotocols:\n  - {name: a, pull: 0}\n"),
               HasSubstr("pull"));
   EXPECT_THAT(

@@ -14,6 +14,7 @@
 #include "prediction/recorded_motion.h"
 #include "record/effect_card.h"
 #include "support/held_bar.h"
+#include "support/replace_in_file.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -31,16 +32,6 @@ std::vector<Eigen::Matrix3Xd> Moving(double speed, int rests = 5) {
   for (int frame = 0; frame < kFrames; ++frame)
     markers.emplace_back(BarMarkerPlaces().array() + speed * std::max(0, frame - rests));
   return markers;
-}
-
-void Replace(const std::filesystem::path& file, const Replacements& replaced) {
-  std::string text = FileContent(file);
-  for (const auto& [from, to] : replaced) {
-    const size_t at = text.find(from);
-    ASSERT_NE(at, std::string::npos) << from;
-    text.replace(at, from.size(), to);
-  }
-  std::ofstream(file) << text;
 }
 
 class ReadingAPredictionStudy : public testing::Test {
@@ -61,7 +52,7 @@ class ReadingAPredictionStudy : public testing::Test {
   std::string MessageAfterInRecording(const Replacements& replaced,
                                       const Replacements& in_study = {}) const {
     WriteBarRecording(folder_.Path(), Moving(0.001));
-    Replace(folder_ / "recording.yaml", replaced);
+    ReplaceInFile(folder_ / "recording.yaml", replaced);
     return MessageAfter(in_study);
   }
 
@@ -509,7 +500,7 @@ TEST_F(ReadingAPredictionStudy, WarnsWhereNoFrameIsHeldOut) {
   EXPECT_THAT(StudyWarnings(late),
               testing::Contains(HasSubstr("bar: `fit_until: 9 s` does not lie before the last "
                                           "frame that is used, at 0.25 s")));
-  EXPECT_EQ(FittedFrames(late.recordings[0]), late.recordings[0].frames);
+  EXPECT_EQ(late.recordings[0].FittedFrames(), late.recordings[0].frames);
 }
 
 TEST_F(ReadingAPredictionStudy, WarnsOfSettingsOfScansWithoutAScan) {
@@ -577,6 +568,34 @@ TEST_F(ReadingAPredictionStudy, RefusesAStartInMotion) {
   EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object already moves between its first two"));
   WriteBarRecording(folder_.Path(), Moving(0.001));
   EXPECT_EQ(MessageAfter(kNoHold), "nothing was refused");
+}
+
+TEST(PredictedRecording, FitsItsUsedFramesUntilATime) {
+  PredictedRecording item;
+  item.recording.times = {0, 1, 2, 3, 4};
+  item.frames = {0, 2, 4};
+  item.fit_until = 2;
+  EXPECT_THAT(item.FittedFrames(), ElementsAre(0, 2));
+  EXPECT_FALSE(item.IsFitted(4));
+  item.fitted = false;
+  EXPECT_THAT(item.FittedFrames(), testing::IsEmpty());
+  EXPECT_FALSE(item.IsFitted(0));
+}
+
+TEST(PredictedRecording, HasTheSameMarkersOnlyWithTheSameNamesAndPlaces) {
+  PredictedRecording one;
+  one.recording.markers.names = {"a", "b"};
+  one.recording.markers.places = Eigen::Matrix3Xd::Identity(3, 2);
+  PredictedRecording other = one;
+  EXPECT_THAT(*SameMarkers(one, other), ElementsAre(0, 1));
+  other.recording.markers.places(0, 1) = 1e-3;
+  EXPECT_FALSE(SameMarkers(one, other));
+  other = one;
+  other.recording.markers.names = {"b", "a"};
+  EXPECT_FALSE(SameMarkers(one, other));
+  // In another order, as the columns of a file may be.
+  other.recording.markers.places = one.recording.markers.places.rowwise().reverse().eval();
+  EXPECT_THAT(*SameMarkers(one, other), ElementsAre(1, 0));
 }
 
 }  // namespace

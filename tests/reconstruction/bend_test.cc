@@ -3,9 +3,11 @@
 
 #include <fstream>
 #include <string>
+#include <utility>
 
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_study.h"
+#include "support/replace_in_file.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
@@ -16,17 +18,13 @@ namespace {
 std::filesystem::path WriteReducedBend(const TemporaryFolder& folder) {
   const std::filesystem::path experiments =
       std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments";
-  std::string text = FileContent(experiments / "bend.yaml");
-  const auto replace = [&text](const std::string& from, const std::string& to) {
-    const size_t at = text.find(from);
-    ASSERT_NE(at, std::string::npos) << from;
-    text.replace(at, from.size(), to);
-  };
-  replace("recording: recordings/bend", "recording: " + (experiments / "recordings/bend").string());
-  replace("true_surfaces: recordings/bend/truth",
-          "true_surfaces: " + (experiments / "recordings/bend/truth").string());
-  replace("output: ../results/bend", "output: " + (folder / "run").string());
-  replace("{every: 1}", "{every: 5}");
+  const std::string text = WithReplacements(
+      FileContent(experiments / "bend.yaml"),
+      {{"recording: recordings/bend", "recording: " + (experiments / "recordings/bend").string()},
+       {"true_surfaces: recordings/bend/truth",
+        "true_surfaces: " + (experiments / "recordings/bend/truth").string()},
+       {"output: ../results/bend", "output: " + (folder / "run").string()},
+       {"{every: 1}", "{every: 5}"}});
   std::ofstream(folder / "bend.yaml") << text;
   return folder / "bend.yaml";
 }
@@ -56,7 +54,18 @@ TEST(Bend, TheModelFollowsTheScansToTheirNoise) {
   const RunRecord again = RunExperiment(experiment);
   EXPECT_EQ(FileContent(folder / "run" / "manifest.json"), manifest);
   EXPECT_EQ(again.animation_residual, record.animation_residual);
-  EXPECT_TRUE(std::filesystem::exists(folder / "run/results/body.pvd"));
+  const std::filesystem::path results = folder / "run/results";
+  for (const char* file : {"body.pvd", "surface.pvd", "scan.pvd"})
+    EXPECT_TRUE(std::filesystem::exists(results / file)) << file;
+  for (const auto& [file, field] : {std::pair{"body_0000.vtu", "displacement_m"},
+                                    {"body_0000.vtu", "force_N"},
+                                    {"body_0000.vtu", "pseudo_force_N"},
+                                    {"surface_0000.vtp", "residual_m"},
+                                    {"surface_0000.vtp", "residual_length_m"},
+                                    {"scan_0000.vtp", "distance_to_model_m"}})
+    EXPECT_NE(FileContent(results / "fields" / file).find('"' + std::string(field) + '"'),
+              std::string::npos)
+        << field;
 }
 
 }  // namespace

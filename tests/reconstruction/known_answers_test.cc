@@ -58,6 +58,16 @@ class KnownAnswers : public testing::Test {
   ValidationSettings settings_;
 };
 
+TEST_F(KnownAnswers, AreRefusedInAnotherUnitThanMetres) {
+  const Eigen::Matrix3Xd seen = BoxMesh({0, 0, 0}, {0.07, 0.02, 0.02}, {1, 1, 1}).nodes;
+  EXPECT_THAT([&] { RequireLengthUnit("truth.msh", 1000 * seen, seen); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr("truth.msh"), HasSubstr("must be in m"))));
+  EXPECT_THROW(RequireLengthUnit("truth.msh", seen.colwise() + Eigen::Vector3d(0, 1, 0), seen),
+               InputError)
+      << "elsewhere";
+  EXPECT_NO_THROW(RequireLengthUnit("truth.msh", 2 * seen, seen.leftCols(4)));
+}
+
 TEST_F(KnownAnswers, AreReadFrameByFrame) {
   WriteCounting(settings_.true_positions, {3, 9, 3});
   const TruePositions positions = ReadTruePositions(settings_, {0, 2});

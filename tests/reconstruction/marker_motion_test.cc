@@ -5,16 +5,21 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "experiment/reference_body.h"
+#include "geometry/mesh_io.h"
+#include "reconstruction/body_registration.h"
 #include "reconstruction/follow.h"
 #include "reconstruction/reconstruction_measures.h"
 #include "reconstruction/recorded_states.h"
 #include "reconstruction/residual_at_vertices.h"
 #include "reconstruction/shown_reconstruction.h"
+#include "support/box_mesh.h"
 #include "support/marker_recording.h"
+#include "support/replace_in_file.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
@@ -176,12 +181,57 @@ TEST(MarkerMotion, ARunThatEndedEarlyHasNoSumOverAllFrames) {
   EXPECT_TRUE(std::isnan(measured().animation_residual)) << "nothing was followed";
 }
 
-TEST(MarkerMotion, ForcesAreFittedWhereTheFirstFrameDoesNotShowAMarker) {
+// Nothing moves the model, so that D of frame 1, the first that is followed, is the motion of the
+// markers since the undeformed state, which is not shown.
+TEST(MarkerMotion, MarkersAreComparedWithTheirPlacesOnTheUndeformedBody) {
+  const TemporaryFolder folder;
+  WriteMarkers(
+      folder, 4, {0, 0, 0.002}, [](int) { return true; }, kClamped);
+  const FollowedMarkers followed =
+      Follow(folder, "frames: {first: 1}\nvalidation: {hold_out_every: 2}\n");
+  ASSERT_EQ(followed.record.frames.size(), 2u);
+  EXPECT_NEAR(followed.record.frames[0].residual_mean, 0.002, 1e-9);
+  EXPECT_NEAR(followed.record.frames[1].residual_mean, 0.004, 1e-9);
+  EXPECT_NEAR(followed.record.measures.at("held_out_rms_max_m"), 0.004, 1e-9);
+  EXPECT_EQ(followed.record.measures.at("held_out_points"), 2);
+}
+
+// In frame 1, the first that is followed, the marker at the tip has moved already.
+TEST(MarkerMotion, ForcesOfARecordingThatBeginsDeformedDoNotDependOnItsFirstFrame) {
+  const TemporaryFolder folder;
+  WriteMarkers(
+      folder, 6, {0, 0, 0.001}, [](int m) { return m >= 4; }, kClamped);
+  const auto force = [&](const std::string& more) {
+    const FollowedMarkers followed = Follow(folder, "fit: {noise: 0.1 mm}\n" + more, kTipForce);
+    EXPECT_TRUE(followed.motion.frames.back().solver.usable);
+    return followed.motion.frames.back().force.row(2).sum();
+  };
+  const double from_rest = force("");
+  EXPECT_GT(from_rest, 0);
+  EXPECT_NEAR(force("frames: {first: 1}\n"), from_rest, 0.01 * from_rest) << "of the search";
+}
+
+TEST(MarkerMotion, AMarkerThatTheFirstFrameDoesNotShowIsUsedInTheOthers) {
+  const TemporaryFolder folder;
+  WriteMarkers(
+      folder, 6, {0, 0, 0.001}, [](int m) { return m >= 4; }, kClamped, /*hidden=*/2);
+  const FollowedMarkers followed = Follow(folder, "fit: {noise: 0.1 mm}\n", kTipForce);
+  ASSERT_EQ(followed.motion.frames.size(), 3u);
+  EXPECT_EQ(followed.motion.frames[0].observations, 5);
+  EXPECT_EQ(followed.motion.frames[1].observations, 6);
+  EXPECT_TRUE(followed.motion.frames[2].residual.allFinite());
+  EXPECT_THAT(followed.motion.warnings, testing::Not(Contains(HasSubstr("used in no frame"))));
+}
+
+TEST(MarkerMotion, AMarkerWithoutAPlaceThatTheFirstFrameDoesNotShowIsReported) {
   const TemporaryFolder folder;
   constexpr int kHidden = 2;
   WriteMarkers(
       folder, 6, {0, 0, 0.001}, [](int m) { return m >= 4; }, kClamped, kHidden);
+  ReplaceInFile(folder / "recording.yaml", "    - {name: m2,", "    # - {name: m2,");
   const FollowedMarkers followed = Follow(folder, "fit: {noise: 0.1 mm}\n", kTipForce);
+  EXPECT_THAT(followed.motion.warnings,
+              Contains(HasSubstr("1 of 6 tracked points are used in no frame")));
   ASSERT_EQ(followed.motion.frames.size(), 3u);
   for (const FollowedFrame& frame : followed.motion.frames) {
     ASSERT_TRUE(frame.solver.usable) << frame.solver.message;
@@ -274,6 +324,30 @@ TEST(MarkerMotion, TheNoiseOfMarkersMustBeGivenWhereItCannotBeEstimated) {
                   HasSubstr("fit: noise must be given"), HasSubstr("2 are followed"))));
 }
 
+TEST(MarkerMotion, KeysWithoutEffectAreAWarning) {
+  const TemporaryFolder folder;
+  WriteMarkers(
+      folder, 4, {0, 0, 0.002}, [](int) { return true; }, kClamped);
+  const auto warnings = [&](const std::string& more, const std::string& forces) {
+    return Follow(folder, more, forces).study.recording.warnings;
+  };
+  const std::vector<std::string> ignored =
+      warnings("fit: {noise: 0.1 mm, reach: 0.2}\n", "{model: none, length: 10 mm}");
+  EXPECT_THAT(ignored, Contains(HasSubstr("forces.length has no effect with forces.model none")));
+  EXPECT_THAT(ignored, Contains(HasSubstr("fit.reach has no effect on markers")));
+  EXPECT_THAT(warnings("fit: {noise: 0.1 mm}\n", kTipForce),
+              testing::Not(Contains(HasSubstr("has no effect"))));
+}
+
+TEST(MarkerMotion, AHoldOutThatSelectsNoMarkerIsRefused) {
+  const TemporaryFolder folder;
+  WriteMarkers(
+      folder, 4, {0, 0, 0.002}, [](int) { return true; }, kClamped);
+  EXPECT_THAT([&] { Follow(folder, "validation: {hold_out_every: 100}\n"); },
+              testing::ThrowsMessage<InputError>(
+                  HasSubstr("hold_out_every: holds out none of the 4 tracked points")));
+}
+
 TEST(MarkerMotion, NoNoiseIsNeededWhereNoForcesAreFitted) {
   const TemporaryFolder folder;
   WriteMarkers(
@@ -286,6 +360,88 @@ TEST(MarkerMotion, NoNoiseIsNeededWhereNoForcesAreFitted) {
   }
   const FollowedMarkers fitted = Follow(folder, "fit: {noise: 0.1 mm}\n", kTipForce);
   EXPECT_EQ(fitted.record.measures.at("noise_m"), 1e-4);
+}
+
+TEST(MarkerMotion, HeldOutPointsThatAreNeverSeenHaveNoError) {
+  const TemporaryFolder folder;
+  WriteMarkers(
+      folder, 4, {0, 0, 0.002}, [](int) { return true; }, kClamped);
+  FollowedMarkers followed = Follow(folder, "validation: {hold_out_every: 4}\n");
+  EXPECT_EQ(followed.record.measures.at("held_out_points"), 1);
+  EXPECT_EQ(followed.record.measures.count("held_out_spacing_m"), 1u);
+  for (FrameState& state : followed.states)
+    state.held_out.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const RunRecord unseen =
+      MeasureRun(followed.study, followed.reference, followed.states, followed.motion);
+  EXPECT_EQ(unseen.measures.at("held_out_points"), 0);
+  EXPECT_EQ(unseen.measures.count("held_out_rms_max_m"), 0u);
+  EXPECT_EQ(unseen.measures.count("held_out_spacing_m"), 0u);
+}
+
+// The points as a file of true positions that do not change in any of `frames`.
+void WriteResting(const std::filesystem::path& file, const Eigen::Matrix3Xd& points, int frames) {
+  std::string header = fmt::format(
+      "{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}, 3), }}", frames, points.cols());
+  header.resize(117, ' ');
+  std::ofstream stream(file, std::ios::binary);
+  stream << "\x93NUMPY" << '\x01' << '\0' << '\x76' << '\0' << header << '\n';
+  for (int frame = 0; frame < frames; ++frame)
+    stream.write(reinterpret_cast<const char*>(points.data()), 8 * points.size());
+}
+
+TEST(MarkerMotion, TruePointsAtRestHaveNoRelativeError) {
+  const TemporaryFolder folder;
+  WriteMarkers(
+      folder, 4, {0, 0, 0.002}, [](int) { return true; }, kClamped);
+  const TetMesh mesh = BoxMesh({0, -0.01, -0.01}, {0.08, 0.01, 0.01}, {2, 1, 1});
+  WriteTetMesh(folder / "true.msh", mesh);
+  WriteResting(folder / "true.npy", mesh.nodes, 3);
+  const FollowedMarkers followed =
+      Follow(folder, "validation: {true_mesh: " + (folder / "true.msh").string() +
+                         ", true_positions: " + (folder / "true.npy").string() + "}\n");
+  EXPECT_EQ(followed.record.measures.at("true_displacement_max_m"), 0);
+  EXPECT_NEAR(followed.record.measures.at("true_position_mean_error_m"), 0, 1e-9);
+  EXPECT_EQ(followed.record.measures.count("true_position_mean_error"), 0u);
+}
+
+TEST(MarkerMotion, OnePointAloneHasNoSpacing) {
+  const TemporaryFolder folder;
+  WriteMarkers(
+      folder, 4, {0, 0, 0.002}, [](int) { return true; }, kClamped);
+  FollowedMarkers followed = Follow(folder, "validation: {hold_out_every: 4}\n");
+  // The places of the others are not known.
+  followed.study.recording.markers.places.leftCols(3).setConstant(
+      std::numeric_limits<double>::quiet_NaN());
+  followed.states[0].tracked.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const RunRecord alone =
+      MeasureRun(followed.study, followed.reference, followed.states, followed.motion);
+  EXPECT_EQ(alone.measures.count("held_out_rms_max_m"), 1u);
+  EXPECT_EQ(alone.measures.count("held_out_spacing_m"), 0u);
+}
+
+// Twelve points are too few for CPD to register them without a warning.
+TEST(MarkerMotion, TheStartOfAFrameFollowsIdentifiedPoints) {
+  const TemporaryFolder folder;
+  WriteMarkers(
+      folder, 12, {0, 0, 0.002}, [](int) { return true; }, kClamped);
+  FollowedMarkers followed = Follow(folder, "");
+  EXPECT_THAT(followed.record.warnings, testing::Not(Contains(HasSubstr("registration"))));
+  const Eigen::Isometry3d turn = Eigen::Translation3d(0.04, 0, 0) *
+                                 Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()) *
+                                 Eigen::Translation3d(-0.04, 0, 0);
+  followed.states[1].tracked = turn * followed.states[0].tracked;
+  BodyRegistration registration(followed.study, *followed.motion.body, followed.states, nullptr,
+                                &followed.motion.warnings);
+  const Eigen::Matrix3Xd& rest = followed.motion.body->mesh.nodes;
+  EXPECT_LT((registration.Shift(1, rest) - (turn * rest - rest)).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT(registration.Shift(0, rest).cwiseAbs().maxCoeff(), 1e-9) << "the undeformed body";
+  // Where one marker moves by itself, what is near it moves with it.
+  followed.states[1].tracked = followed.states[0].tracked;
+  followed.states[1].tracked(1, 11) += 1e-3;
+  const Eigen::Vector3d there = followed.states[0].tracked.col(11);
+  EXPECT_NEAR(registration.Shift(1, there)(1, 0), 1e-3, 1e-5);
+  const Eigen::Vector3d far = followed.states[0].tracked.col(0);
+  EXPECT_NEAR(registration.Shift(1, far)(1, 0), 0, 1e-5);
 }
 
 // Four points are too few for CPD, so that no force could be fitted to them.

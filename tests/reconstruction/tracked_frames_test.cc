@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "effects/catalogue.h"
+#include "reconstruction/body_registration.h"
 #include "reconstruction/follow.h"
 #include "support/box_mesh.h"
 #include "support/silent_progress.h"
@@ -69,6 +70,18 @@ TEST_F(FailedRegistration, StartsTheFrameWhereTheLastOneEnded) {
   const TrackedFrames tracked = TrackFrames(study_, states_, &progress_);
   EXPECT_NE(tracked.failures.at(2), "");
   EXPECT_EQ(tracked.DisplacementAt(2, tracked.points), tracked.DisplacementAt(1, tracked.points));
+}
+
+// A displacement of CPD has its error along two axes of the surface, so that the deviation along
+// one is less than that of the whole.
+TEST_F(FailedRegistration, TheDeviationOfATargetIsThatAlongOneAxisOfTheSurface) {
+  const TrackedFrames tracked = TrackFrames(study_, states_, &progress_);
+  const Body body = MakeBody(reference_.mesh, 1000);
+  std::vector<std::string> warnings;
+  const BodyRegistration registration(study_, body, states_, &tracked, &warnings);
+  const Eigen::VectorXd whole = tracked.DeviationAt(2, body.boundary.surface.vertices);
+  const Eigen::VectorXd along = registration.Register(2, body.mesh.nodes).sigma;
+  EXPECT_TRUE((2 * along.array().square()).isApprox(whole.array().square()));
 }
 
 void ExpectUnmeasuredInTheSecond(const FollowedMotion& motion) {

@@ -16,6 +16,15 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
+TEST(CalibrationRecord, NoSingleNoiseHoldsForScans) {
+  CalibrationRecord record;
+  record.noise = 1e-4;
+  record.recordings.resize(2);
+  EXPECT_DOUBLE_EQ(RmsOfNoise(record).value(), std::sqrt(3.0) * 1e-4);
+  record.recordings[1].scan.emplace();
+  EXPECT_EQ(RmsOfNoise(record), std::nullopt);
+}
+
 TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   CalibrationRecord record;
   record.usable = true;
@@ -122,6 +131,8 @@ TEST(CalibrationRecord, FindsTheBoundThatAnIntervalComesNear) {
 
 TEST(CalibrationRecord, AnotherFileIsRefused) {
   const TemporaryFolder folder;
+  EXPECT_THAT([&] { ReadCalibrationFile(folder / "calibration.json"); },
+              ThrowsMessage<InputError>(HasSubstr("cannot be read: no such file")));
   std::ofstream(folder / "calibration.json") << "{}";
   EXPECT_THAT([&] { ReadCalibrationFile(folder / "calibration.json"); },
               ThrowsMessage<InputError>(HasSubstr("is not a record of a calibration")));

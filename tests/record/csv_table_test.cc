@@ -46,6 +46,14 @@ TEST(CsvTableTest, TableWithoutRowsKeepsItsHeader) {
   EXPECT_EQ(table[0].values.size(), 0);
 }
 
+TEST(CsvTableTest, AColumnIsFoundByItsName) {
+  const CsvTable table = {{"a", Eigen::Vector2d(1, 2)}, {"b", Eigen::Vector2d(3, 4)}};
+  EXPECT_EQ(ColumnOf(table, "b", "x.csv"), Eigen::Vector2d(3, 4));
+  EXPECT_EQ(FindColumn(table, "c"), nullptr);
+  EXPECT_THAT([&] { ColumnOf(table, "c", "x.csv"); },
+              ThrowsMessage<InputError>(HasSubstr("x.csv: has no column c")));
+}
+
 TEST(CsvTableTest, ErrorsInDamagedFilesNameTheLine) {
   const TemporaryFolder folder;
   const auto file = folder / "a.csv";

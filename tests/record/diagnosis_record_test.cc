@@ -113,6 +113,8 @@ TEST(DiagnosisRecord, TellsWhichEffectExplainsMostOfWhatTheCatalogueDoesNotHave)
 
 TEST(DiagnosisRecord, AnEarlierFormatIsRefusedWithTheCommandToRun) {
   const TemporaryFolder folder;
+  EXPECT_THAT([&] { ReadDiagnosisFile(folder / "diagnosis.json"); },
+              ThrowsMessage<InputError>(HasSubstr("cannot be read: no such file")));
   std::ofstream(folder / "diagnosis.json") << R"({"schema_version": 8})";
   EXPECT_THAT([&] { ReadDiagnosisFile(folder / "diagnosis.json"); },
               ThrowsMessage<InputError>(HasSubstr("run `lacuna diagnose` again")));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "core/error.h"
 #include "record/packed_array.h"
@@ -33,7 +34,7 @@ MotionRecord BendingTube(int rows, int columns, int frames) {
   for (int f = 0; f < frames; ++f)
     for (int r = 0; r < rows; ++r)
       for (int c = 0; c < columns; ++c) {
-        const double along = 0.2 * r / rows, angle = 2 * M_PI * c / columns;
+        const double along = 0.2 * r / rows, angle = 2 * std::numbers::pi * c / columns;
         lift(r * columns + c, f) = along * along * std::sin(6 * motion.times[f] + 3 * along);
         motion.positions.col(f).segment<3>(3 * (r * columns + c)) << along, 0.02 * std::cos(angle),
             0.02 * std::sin(angle) + lift(r * columns + c, f);

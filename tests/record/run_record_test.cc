@@ -22,6 +22,7 @@ RunRecord Example() {
   record.recording = "bend";
   record.object_size = 0.125;
   record.animation_residual = 0.25;
+  record.forces = RunForces::kKnown;
   record.relative_animation_residual = 2;
   record.mesh = {100, 300, 2, 1e-4, 0.3, 1.4};
   record.stages["fit"] = {true, "converged", "", 12};
@@ -50,12 +51,15 @@ RunRecord Example() {
 
 TEST(RunRecordTest, IsReadBackCompletely) {
   const TemporaryFolder folder;
-  const RunRecord written = Example();
+  RunRecord written = Example();
+  written.frames_not_tried = 3;
   SaveRunRecord(written, folder.Path());
   const RunRecord read = LoadRunRecord(folder.Path());
   EXPECT_EQ(read.recording, written.recording);
   EXPECT_EQ(read.object_size, written.object_size);
   EXPECT_EQ(read.animation_residual, written.animation_residual);
+  EXPECT_EQ(read.forces, written.forces);
+  EXPECT_EQ(read.frames_not_tried, 3);
   EXPECT_EQ(read.relative_animation_residual, written.relative_animation_residual);
   EXPECT_EQ(read.mesh.node_count, 100);
   EXPECT_EQ(read.mesh.tet_count, 300);
@@ -106,6 +110,9 @@ TEST(RunRecordTest, IsUsableOnlyWhenEveryStageAndFrameIs) {
   EXPECT_FALSE(RunRecord().IsUsable());
   RunRecord record = Example();
   EXPECT_TRUE(record.IsUsable());
+  record.frames_not_tried = 1;
+  EXPECT_FALSE(record.IsUsable()) << "it ended early";
+  record.frames_not_tried = 0;
   record.frames[1].solver.usable = false;
   EXPECT_FALSE(record.IsUsable());
   record = Example();

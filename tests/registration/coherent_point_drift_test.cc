@@ -237,20 +237,6 @@ TEST(CoherentPointDriftTest, AWarmStartNeedsFewerIterations) {
   EXPECT_LT(Rms(warm.displaced - cold.displaced), 0.05 * kSpacing);
 }
 
-TEST(CoherentPointDriftTest, ReportsProgressAtEveryIteration) {
-  CpdOptions options;
-  int calls = 0;
-  CpdProgress last;
-  options.progress = [&](const CpdProgress& progress) {
-    ++calls;
-    last = progress;
-  };
-  const CpdResult result = RegisterNonrigid(Source(), ScanOfWarpedBody(kPoints, 2), options);
-  EXPECT_EQ(calls, result.iterations);
-  EXPECT_EQ(last.points, kPoints);
-  EXPECT_EQ(last.all_points, kPoints);
-}
-
 TEST(CoherentPointDriftTest, ReportsThatIterationsRanOut) {
   CpdOptions options;
   options.max_iterations = 1;

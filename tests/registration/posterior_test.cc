@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "registration/warped_body.h"
 
@@ -25,10 +26,10 @@ TEST(PosteriorTest, FollowsBayesRuleForTheTruncatedMixture) {
   for (int m = 0; m < 203; ++m) {
     for (int n = 0; n < 150; ++n) {
       const double distance = (source.col(m) - target.col(n)).cast<double>().norm() / kSigma;
-      p(m, n) = distance <= 4.0
-                    ? std::exp(-0.5 * distance * distance) /
-                          std::pow(2.0 * M_PI * kSigma * kSigma, 1.5) * (1.0 - kOutliers) / 203
-                    : 0.0;
+      p(m, n) = distance <= 4.0 ? std::exp(-0.5 * distance * distance) /
+                                      std::pow(2.0 * std::numbers::pi * kSigma * kSigma, 1.5) *
+                                      (1.0 - kOutliers) / 203
+                                : 0.0;
     }
   }
   const Eigen::RowVectorXd density = p.colwise().sum().array() + kOutliers / kVolume;

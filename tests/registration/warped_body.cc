@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace lacuna {
@@ -48,7 +49,7 @@ PointCloud SampleBody(int count, uint64_t seed) {
 }
 
 Eigen::Matrix3Xd Warp(const Eigen::Matrix3Xd& points) {
-  const double radius = 0.2 / (25.0 * M_PI / 180.0);
+  const double radius = 0.2 / (25.0 * std::numbers::pi / 180.0);
   Eigen::Matrix3Xd warped(3, points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d p = points.col(i);

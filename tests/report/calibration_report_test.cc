@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace lacuna {
 namespace {
 
@@ -25,6 +27,7 @@ TEST(CalibrationReport, ShowsParametersErrorsAndConflicts) {
   parameter.estimate.traded_with = "drag.coefficient";
   parameter.estimate.correlation = 0.97;
   parameter.at_limit = 14;
+  parameter.with_finest_mesh = 13.8;
   parameter.near_bound = {false, 10.9};
   parameter.shares = DataShares{0.2, 0.05, 0.75};
   record.held = {{"density", "kg/m^3", {1070}}, {"gravity.acceleration", "m/s^2", {0, 0, -9.81}}};
@@ -45,6 +48,23 @@ TEST(CalibrationReport, ShowsParametersErrorsAndConflicts) {
   EXPECT_THAT(text, ContainsRegex("mass_damping.alpha +20 % +5 % +75 %"));
   EXPECT_THAT(text, HasSubstr("time step 2 ms; halving it would change the prediction by 0.03 σ"));
   EXPECT_THAT(text, HasSubstr("7 of 8 markers conflict with their priors; the worst are listed"));
+}
+
+// The mesh could not be compared with another one, nor the step with half of it.
+TEST(CalibrationReport, PrintsOnlyTheErrorsOfTheModelThatAreKnown) {
+  CalibrationRecord record;
+  record.time_step = 0.002;
+  record.step_error = std::numeric_limits<double>::infinity();
+  FittedParameter& parameter = record.parameters.emplace_back();
+  parameter.name = "young_modulus";
+  parameter.estimate.value = 12;
+  parameter.estimate.posterior_deviation = 0.5;
+  parameter.at_limit = 14;
+  record.recordings.push_back({"swing", true, 1e-4, {3, 30, 1e-4, 2e-4, 1.5}, {}, std::nullopt});
+  const std::string text = CalibrationReport(record);
+  EXPECT_THAT(text, HasSubstr("14 with shorter steps"));
+  EXPECT_THAT(text, HasSubstr("infinitely short time steps"));
+  EXPECT_THAT(text, HasSubstr("  time step 2 ms\n"));
 }
 
 TEST(CalibrationReport, DescribesEveryConflict) {

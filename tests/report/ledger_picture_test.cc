@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "support/small_ledger.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -70,6 +71,21 @@ TEST(LedgerPicture, HasNoLineIfTheNoiseIsUnknown) {
   if (result.status == PictureResult::Status::kNoRenderer) GTEST_SKIP() << result.message;
   int width = 0;
   EXPECT_EQ(CountColours(folder / "ledger.png", &width).noise, 0);
+}
+
+// The title of the effect, as on the page of the report, and not its name.
+TEST(LedgerPicture, ShowsTheModelsThatCouldBeFittedUnderTheirLabels) {
+  Ledger ledger = SmallLedger();
+  ledger.models.front().diagnosis->ranking.front().title = "Drag (of the surrounding air)";
+  const LedgerPicture picture = PictureOf(ledger);
+  ASSERT_EQ(picture.models.size(), 2u);
+  EXPECT_EQ(picture.title, "bar: rms error in the held-out frames");
+  EXPECT_EQ(picture.models[0].label, "initial model");
+  EXPECT_EQ(picture.models[1].label, "with drag");
+  EXPECT_EQ(picture.models[1].error, ledger.models[1].errors.held_out_rms);
+  EXPECT_DOUBLE_EQ(picture.noise, std::sqrt(3.0) * ledger.models[0].record.noise);
+  ledger.models[1].record.usable = false;
+  EXPECT_EQ(PictureOf(ledger).models.size(), 1u);
 }
 
 TEST(LedgerPictureDeathTest, RefusesAPictureWithoutModelsAndAnErrorThatIsNoNumber) {

@@ -54,6 +54,11 @@ TEST(ReportDocument, ShowsTheModelsOfTheLedger) {
   EXPECT_EQ(run.at("ledger").at("models").size(), 2u);
   EXPECT_EQ(run.at("models").at(0).at("diagnosis").at("verdict"), "missing");
   EXPECT_NEAR(run.at("noise").get<double>(), std::sqrt(3.0) * 1e-4, 1e-12);
+  // A run of every kind has all keys.
+  for (const char* key : {"reconstruction", "table1", "ablation", "trials", "intervals"}) {
+    ASSERT_TRUE(run.contains(key)) << key;
+    EXPECT_TRUE(run.at(key).is_null()) << key;
+  }
   EXPECT_THAT(run.at("notes"), IsEmpty());
   EXPECT_THAT(document.at("sentences").at(0).get<std::string>(),
               HasSubstr("at marker tip and from 0.31 s to 0.35 s of recording a."));

@@ -39,6 +39,14 @@ TEST(VerdictText, NamesWhatTheVerdictNames) {
             "frames.");
 }
 
+TEST(VerdictText, LabelsTheModelsOfASequence) {
+  const DiagnosisRecord record = SmallDiagnosis();
+  EXPECT_EQ(ModelLabel(0, "", std::nullopt), "initial model");
+  EXPECT_EQ(ModelLabel(1, "drag", record), "with drag of the air");
+  EXPECT_EQ(ModelLabel(2, "gravity", record), "and with gravity");
+  EXPECT_EQ(ModelLabel(2, "drag", std::nullopt), "and with drag");
+}
+
 TEST(VerdictText, SaysHowMuchTheMissingEffectReducesTheError) {
   DiagnosisRecord record = SmallDiagnosis();
   record.verdict = Verdict::kMissing;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace lacuna {
 namespace {
 
@@ -30,7 +32,7 @@ struct Pair {
   Eigen::Matrix3Xd patch{3, 4};
   Pair() {
     patch << -0.05, 0.05, 0.05, -0.05, -0.05, -0.05, 0.05, 0.05, 0.45, 0.45, 0.45, 0.45;
-    const double quarter = M_PI / 2;
+    const double quarter = std::numbers::pi / 2;
     for (const int c : {0, 1}) {
       Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
       pose.rotate(Eigen::AngleAxisd(c * quarter + 0.3, Eigen::Vector3d::UnitY()));

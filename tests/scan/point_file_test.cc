@@ -182,7 +182,7 @@ TEST(PointFile, RefusesTruncatedAndMalformedFiles) {
     EXPECT_THAT(message, HasSubstr(name));
   }
   EXPECT_THAT(ErrorOf([&] { ReadPointFile(folder.Path() / "absent.ply", {}); }),
-              HasSubstr("absent.ply: cannot be opened"));
+              HasSubstr("absent.ply: cannot be read"));
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ TEST_F(RecordingTest, NamesFileAndFrameOfAnUnusableFrame) {
   const Recording recording = Load(yaml);
   std::filesystem::remove(file);
   EXPECT_EQ(ErrorOf([&] { LoadFrame(recording, 1); }),
-            "frame 1 of \"bar\": " + file + ": cannot be opened for reading");
+            "frame 1 of \"bar\": " + file + ": cannot be read: no such file, or no permission");
   WriteClouds(4);
   std::filesystem::remove(folder_.Path() / "f/p2.csv");
   EXPECT_THAT(LoadError(yaml), HasSubstr("frames.files: the frame numbered 2 is missing"));

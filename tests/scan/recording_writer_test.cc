@@ -52,12 +52,17 @@ TEST(RecordingWriter, WritesWhatIsReadBack) {
   force.times = Eigen::Vector2d(0, 1);
   force.forces = Eigen::Matrix3Xd::Zero(3, 2);
   force.forces(2, 1) = -0.5;
-  written.object.forces = {force};
+  MeasuredForce constant;
+  constant.name = "pull";
+  constant.times = Eigen::VectorXd::Zero(1);
+  constant.forces = Eigen::Vector3d(0.25, 0, 0);
+  written.object.forces = {force, constant};
   written.times = {0, 0.5, 1};
   written.markers.names = {"m 1", "b:2"};
   written.markers.places = Eigen::Matrix3Xd::Zero(3, 2);
   written.markers.places.col(0) << 0.1, 0.02, 0.01;
-  written.markers.places.col(1) << 0.1, 0, 0.01;
+  written.markers.places.col(1) << 0.1 / 3, 0, 0.01;
+  written.instrument = {0.0025, true};
   for (int frame = 0; frame < 3; ++frame)
     written.markers.positions.emplace_back(written.markers.places.array() + 0.001 * frame);
   WriteMarkerRecording(folder / "made", written);
@@ -70,6 +75,9 @@ TEST(RecordingWriter, WritesWhatIsReadBack) {
   EXPECT_THAT(recording.times, ElementsAre(0, 0.5, 1));
   EXPECT_THAT(recording.markers.names, ElementsAre("m 1", "b:2"));
   EXPECT_LT((recording.markers.positions[2] - written.markers.positions[2]).norm(), 1e-9);
+  EXPECT_EQ(recording.markers.places, written.markers.places);
+  EXPECT_EQ(recording.instrument.subset, 0.0025);
+  EXPECT_TRUE(recording.instrument.is_volume);
   EXPECT_EQ(*recording.object.density, 1050);
   EXPECT_EQ(*recording.object.gravity, *written.object.gravity);
   ASSERT_EQ(recording.object.grips.size(), 2u);
@@ -82,8 +90,11 @@ TEST(RecordingWriter, WritesWhatIsReadBack) {
   EXPECT_EQ(recording.object.grips[1].motion, GripMotion::kFollowsMarkers);
   EXPECT_TRUE(recording.object.grips[1].deforms);
   EXPECT_THAT(recording.object.grips[1].markers, ElementsAre("m 1", "b:2"));
-  ASSERT_EQ(recording.object.forces.size(), 1u);
+  ASSERT_EQ(recording.object.forces.size(), 2u);
   EXPECT_EQ(ForceAt(recording.object.forces[0], 0.5).z(), -0.25);
+  EXPECT_EQ(ForceAt(recording.object.forces[1], 1).x(), 0.25);
+  // A table of one row would not cover the frames.
+  EXPECT_TRUE(recording.object.forces[1].file.empty());
   EXPECT_EQ(SelectNodes(*recording.object.forces[0].region, mesh), (std::vector<int>{1, 3}));
   EXPECT_EQ(recording.reference.source, ReferenceSource::kTetMesh);
   EXPECT_EQ(ReadTetMesh(recording.reference.file).mesh.nodes, mesh.nodes);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <set>
 
 #include "core/parallel.h"
@@ -99,7 +100,7 @@ TEST(VirtualScanner, NoiseHasTheDeviationAskedForAndGrowsWithRange) {
   options.reference_range = 0.5;
   for (const double range : {0.5, 1.0}) {
     camera.camera.world_from_camera = Eigen::Translation3d(0.2, 0.2, 0.01 + range) *
-                                      Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX());
+                                      Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitX());
     const ScanResult scan = Scan(plate, {camera}, options, 0);
     ASSERT_EQ(scan.cloud.Size(), 40'000);
     const Eigen::ArrayXd error = scan.cloud.points.row(2).transpose().array() - 0.01;

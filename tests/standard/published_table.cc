@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "core/error.h"
-#include "scan/delimited_table.h"
 #include "scan/table_numbers.h"
+#include "scan/table_text.h"
 
 namespace lacuna {
 

@@ -12,6 +12,7 @@
 #include "geometry/embedding.h"
 #include "prediction/prediction_study_reader.h"
 #include "support/marker_recording.h"
+#include "support/replace_in_file.h"
 
 namespace lacuna {
 Eigen::Matrix3Xd BarMarkerPlaces() {
@@ -91,7 +92,7 @@ reference: {from: mesh, file: box.off}
 
 std::string BarExperiment(const std::filesystem::path& folder,
                           const std::map<std::string, std::string>& replaced) {
-  std::string text = fmt::format(R"(schema_version: 1
+  const std::string text = fmt::format(R"(schema_version: 1
 name: bar
 mesh: {{max_volume: 1000 mm^3, order: 2}}
 material: {{law: neo_hookean, young_modulus: 0.15 MPa, poisson_ratio: 0.4}}
@@ -110,13 +111,8 @@ recordings:
       region: {{half_space: {{point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}}}
       release: {} s
 )",
-                                 (folder / "recording.yaml").string(), kFitUntil, kRelease);
-  for (const auto& [from, to] : replaced) {
-    const size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    if (at != std::string::npos) text.replace(at, from.size(), to);
-  }
-  return text;
+                                       (folder / "recording.yaml").string(), kFitUntil, kRelease);
+  return WithReplacements(text, replaced);
 }
 
 PredictionStudy ReadBarStudy(const std::filesystem::path& folder,

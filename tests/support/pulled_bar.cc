@@ -10,6 +10,7 @@
 #include "fem/prediction.h"
 #include "geometry/embedding.h"
 #include "geometry/rotation.h"
+#include "support/replace_in_file.h"
 
 namespace lacuna {
 
@@ -78,7 +79,7 @@ void WritePulledBar(const std::filesystem::path& folder, const PulledBarTruth& t
 
 std::string PulledBarExperiment(const std::filesystem::path& folder,
                                 const std::map<std::string, std::string>& replaced) {
-  std::string text = fmt::format(R"(schema_version: 1
+  const std::string text = fmt::format(R"(schema_version: 1
 name: pulled
 output: run
 mesh: {{max_volume: 1000 mm^3, order: 2}}
@@ -91,13 +92,8 @@ recordings:
   - recording: {}
     fit_until: {} s
 )",
-                                 (folder / "recording.yaml").string(), kPulledUntil);
-  for (const auto& [from, to] : replaced) {
-    const size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    if (at != std::string::npos) text.replace(at, from.size(), to);
-  }
-  return text;
+                                       (folder / "recording.yaml").string(), kPulledUntil);
+  return WithReplacements(text, replaced);
 }
 
 }  // namespace lacuna

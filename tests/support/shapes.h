@@ -24,6 +24,15 @@ inline TriMesh MeshOf(const std::vector<Eigen::Vector3d>& vertices,
   return mesh;
 }
 
+// The vertices and triangles of both surfaces, first those of `a`.
+inline TriMesh Together(const TriMesh& a, const TriMesh& b) {
+  TriMesh both{Eigen::Matrix3Xd(3, a.vertices.cols() + b.vertices.cols()),
+               Eigen::Matrix3Xi(3, a.triangles.cols() + b.triangles.cols())};
+  both.vertices << a.vertices, b.vertices;
+  both.triangles << a.triangles, (b.triangles.array() + static_cast<int>(a.vertices.cols()));
+  return both;
+}
+
 // An icosahedron whose triangles are quartered `subdivisions` times, pushed out to the sphere.
 inline TriMesh Icosphere(double radius, int subdivisions) {
   const double g = (1 + std::sqrt(5.0)) / 2;

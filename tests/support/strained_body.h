@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <utility>
 
@@ -61,7 +62,7 @@ class StrainedBody {
     for (int n = 1; n <= kSteps; ++n) {
       Eigen::VectorXd next = rest;
       for (int k = 0; k < kHarmonics; ++k) {
-        const double angle = 2 * M_PI * (k + 1) * n / kSteps;
+        const double angle = 2 * std::numbers::pi * (k + 1) * n / kSteps;
         next += std::sin(angle) * shape.col(2 * k) + (1 - std::cos(angle)) * shape.col(2 * k + 1);
       }
       const Eigen::VectorXd next_force = Move(next, duration / kSteps);

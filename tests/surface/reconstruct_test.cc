@@ -131,25 +131,6 @@ TEST(ReconstructSurface, ClosesTheUnseenSide) {
               0.07 * 4.18879 * std::pow(0.05, 3));
 }
 
-TEST(ReconstructSurface, AnOpenSurfaceEndsWhereThePointsEnd) {
-  PointCloud cloud = Scan(Icosphere(0.05, 5), 12000, 1e-4, 4);
-  std::vector<int> seen;
-  for (int i = 0; i < cloud.Size(); ++i) {
-    if (cloud.points(2, i) > 0) seen.push_back(i);
-  }
-  cloud = {cloud.points(Eigen::all, seen).eval(), cloud.normals(Eigen::all, seen).eval()};
-  const Surface surface = ReconstructSurface(cloud, {.closed = false});
-  ASSERT_TRUE(surface.IsUsable()) << surface.message;
-  EXPECT_EQ(surface.report.boundary_loops.size(), 1u);
-  EXPECT_EQ(surface.report.euler_characteristic, 1);
-  // A fringe of up to three spacings of 1.6 mm.
-  EXPECT_GT(surface.mesh.vertices.row(2).minCoeff(), -0.006);
-  EXPECT_LT(surface.mesh.vertices.row(2).minCoeff(), 0.002);
-  const double half = 2 * 3.14159 * 0.05 * 0.05;
-  EXPECT_GT(surface.report.area, 0.97 * half);
-  EXPECT_LT(surface.report.area, 1.15 * half);
-}
-
 TEST(ReconstructSurface, ReversesASurfaceWithInwardNormalsWithANote) {
   PointCloud cloud = Scan(Icosphere(0.05, 4), 4000, 0, 6);
   cloud.normals *= -1;

@@ -12,7 +12,7 @@ namespace {
 
 TEST(RemeshIsotropic, MakesUniformTrianglesOnTheSameSurface) {
   const TriMesh body = OrganicSurface(5);
-  const TriMesh remeshed = RemeshIsotropic(body, {.edge_length = 0.15});
+  const TriMesh remeshed = RemeshIsotropic(body, 0.15);
   const SurfaceReport report = CheckSurface(remeshed);
   EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
   EXPECT_NEAR(report.mean_edge, 0.15, 0.02);
@@ -22,21 +22,9 @@ TEST(RemeshIsotropic, MakesUniformTrianglesOnTheSameSurface) {
   EXPECT_NEAR(report.volume, EnclosedVolume(body), 0.01 * EnclosedVolume(body));
 }
 
-TEST(RemeshIsotropic, KeepsSharpEdgesOnRequest) {
-  const TriMesh box = BoxSurface({0.2, 0.03, 0.04}, {4, 1, 1});
-  const TriMesh sharp = RemeshIsotropic(box, {.edge_length = 0.007, .feature_angle = 1});
-  const SurfaceReport report = CheckSurface(sharp);
-  EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
-  // With all edges and corners kept, nothing of the box is lost.
-  EXPECT_NEAR(report.volume, 0.2 * 0.03 * 0.04, 1e-9 * 0.2 * 0.03 * 0.04);
-  EXPECT_NEAR(report.mean_edge, 0.007, 0.0015);
-  EXPECT_LT(CheckSurface(RemeshIsotropic(box, {.edge_length = 0.007})).volume,
-            0.9999 * report.volume);
-}
-
 TEST(RemeshIsotropic, KeepsTheRimOfAnOpenSheet) {
   const TriMesh sheet = FlatSheet(0.3, 0.1, 30, 10);
-  const SurfaceReport report = CheckSurface(RemeshIsotropic(sheet, {.edge_length = 0.02}));
+  const SurfaceReport report = CheckSurface(RemeshIsotropic(sheet, 0.02));
   EXPECT_EQ(report.boundary_loops.size(), 1u);
   EXPECT_TRUE(report.IsManifold() && report.IsOriented() && report.IsFreeOfIntersections());
   EXPECT_NEAR(report.area, 0.03, 0.02 * 0.03);  // corners may be cut by half an edge
@@ -44,8 +32,8 @@ TEST(RemeshIsotropic, KeepsTheRimOfAnOpenSheet) {
 
 TEST(RemeshIsotropic, IsReproducibleBitByBit) {
   const TriMesh body = OrganicSurface(4);
-  const TriMesh first = RemeshIsotropic(body, {.edge_length = 0.1});
-  const TriMesh second = RemeshIsotropic(body, {.edge_length = 0.1});
+  const TriMesh first = RemeshIsotropic(body, 0.1);
+  const TriMesh second = RemeshIsotropic(body, 0.1);
   EXPECT_EQ(first.vertices, second.vertices);
   EXPECT_EQ(first.triangles, second.triangles);
 }
@@ -53,8 +41,8 @@ TEST(RemeshIsotropic, IsReproducibleBitByBit) {
 TEST(RemeshIsotropic, RefusesANonManifoldSurface) {
   const TriMesh book = MeshOf({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
                               {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}});
-  EXPECT_THROW(RemeshIsotropic(book, {.edge_length = 0.1}), InputError);
-  EXPECT_THROW(RemeshIsotropic({}, {.edge_length = 0.1}), InputError);
+  EXPECT_THROW(RemeshIsotropic(book, 0.1), InputError);
+  EXPECT_THROW(RemeshIsotropic({}, 0.1), InputError);
 }
 
 }  // namespace

@@ -16,14 +16,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-TriMesh Together(const TriMesh& a, const TriMesh& b) {
-  TriMesh both{Eigen::Matrix3Xd(3, a.vertices.cols() + b.vertices.cols()),
-               Eigen::Matrix3Xi(3, a.triangles.cols() + b.triangles.cols())};
-  both.vertices << a.vertices, b.vertices;
-  both.triangles << a.triangles, (b.triangles.array() + static_cast<int>(a.vertices.cols()));
-  return both;
-}
-
 void ExpectSound(const RepairedSurface& repaired) {
   const SurfaceReport report = CheckSurface(repaired.mesh);
   EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
@@ -62,11 +54,6 @@ TEST(RepairSurface, KeepsTheLargestComponent) {
   ExpectSound(repaired);
   EXPECT_NEAR(BoundingBox(repaired.mesh.vertices).max().x(), 0.1, 0.005);
   EXPECT_THAT(repaired.notes, Contains(HasSubstr("removed 1 small components")));
-  EXPECT_EQ(
-      CheckSurface(
-          RepairSurface(Together(Icosphere(0.1, 2), crumb), {.keep_largest_component = false}).mesh)
-          .components,
-      2);
 }
 
 TEST(RepairSurface, RemovesSlivers) {
@@ -92,7 +79,7 @@ TEST(RepairSurface, RemovesSlivers) {
   EXPECT_NEAR(EnclosedVolume(repaired.mesh), EnclosedVolume(sphere), 1e-3 * EnclosedVolume(sphere));
 }
 
-TEST(RepairSurface, FillsHolesUpToTheGivenSizeAndReportsWhere) {
+TEST(RepairSurface, FillsHolesAndReportsWhere) {
   TriMesh sphere = Icosphere(0.1, 3);
   std::vector<int> kept;
   for (int t = 0; t < sphere.triangles.cols(); ++t) {
@@ -105,15 +92,8 @@ TEST(RepairSurface, FillsHolesUpToTheGivenSizeAndReportsWhere) {
 
   const RepairedSurface all = RepairSurface(sphere);
   ExpectSound(all);
+  EXPECT_TRUE(CheckSurface(all.mesh).boundary_loops.empty());
   EXPECT_THAT(all.notes, Contains(HasSubstr("filled a hole of perimeter")).Times(2));
-
-  // The open cap has a rim of some 0.4 m, the missing triangle one of 0.05 m.
-  const SurfaceReport small = CheckSurface(RepairSurface(sphere, {.max_hole_perimeter = 0.1}).mesh);
-  ASSERT_EQ(small.boundary_loops.size(), 1u);
-  EXPECT_GT(small.boundary_loops[0].length, 0.3);
-  EXPECT_EQ(CheckSurface(RepairSurface(sphere, {.keep_longest_boundary = true}).mesh)
-                .boundary_loops.size(),
-            1u);
 }
 
 TEST(RepairSurface, OrientsABodyOutward) {
@@ -133,9 +113,6 @@ TEST(RepairSurface, RemovesSelfIntersections) {
   ExpectSound(repaired);
   EXPECT_THAT(repaired.notes, Contains(HasSubstr("self-intersections")));
   EXPECT_NEAR(EnclosedVolume(repaired.mesh), 4.0 / 3 * std::numbers::pi * 1e-3, 1e-4);
-
-  const RepairedSurface left = RepairSurface(sphere, {.remove_self_intersections = false});
-  EXPECT_FALSE(CheckSurface(left.mesh).IsFreeOfIntersections());
 }
 
 TEST(RepairSurface, SplitsBodiesAtANonManifoldEdge) {

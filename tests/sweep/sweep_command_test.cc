@@ -50,6 +50,14 @@ TEST(SweepCommand, TheDistanceOfAReconstructionIsThatOfTheFramesThatWereFollowed
   EXPECT_FALSE(names.contains("scan_distance_m"));
 }
 
+// The run ends at the first frame that cannot be followed.
+TEST(SweepCommand, FramesThatWereNotTriedAreUnusable) {
+  RunRecord record = ThreeFrames();
+  record.frames_not_tried = 16;
+  EXPECT_EQ(NumberOf(OutcomeOf(record), "frames"), 19);
+  EXPECT_EQ(NumberOf(OutcomeOf(record), "frames_unusable"), 17);
+}
+
 // A word of the same name as a number would be a second column of that name.
 TEST(SweepCommand, EachColumnOfAFitHasANameOfItsOwn) {
   CalibrationRecord record;

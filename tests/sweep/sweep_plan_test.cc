@@ -158,12 +158,20 @@ TEST(SweepPlan, ReadsTheBundledSearchesAndTable) {
       plan("search", "command: outer_search\nexperiments: [" + table + "/all.yaml, " + table +
                          "/material.yaml]\nvary: {seed: [1, 2]}\n");
   EXPECT_EQ(searches.cases.size(), 4u);
-  const SweepPlan tables = plan("table", "command: table1\nseeds: 2\nexperiments: " + table +
-                                             "\nvary: {search.measure: [per_point, sum]}\n");
+  const std::string table_lines = "command: table1\nseeds: 2\nexperiments: " + table +
+                                  "\nvary: {search.measure: [per_point, sum]}\n";
+  const SweepPlan tables = plan("table", table_lines);
   ASSERT_EQ(tables.cases.size(), 2u);
   EXPECT_EQ(tables.cases[0].settings.seeds, 2);
   EXPECT_TRUE(std::filesystem::exists(folder / "table" / tables.cases[1].name /
                                       "experiments/geometry.yaml"));
+  EXPECT_EQ(plan("table", table_lines).added, 0);
+  // As if the folder of the table had lost a file since.
+  const std::filesystem::path planned = folder / "table" / tables.cases[1].name / "experiments";
+  std::filesystem::copy_file(planned / "geometry.yaml", planned / "lost.yaml");
+  EXPECT_THAT(
+      [&] { plan("table", table_lines); },
+      ThrowsMessage<InputError>(AllOf(HasSubstr("no longer contains"), HasSubstr("lost.yaml"))));
   EXPECT_THAT(
       [&] {
         plan("other", "command: outer_search\nexperiments: " + table +

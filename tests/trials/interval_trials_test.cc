@@ -91,6 +91,19 @@ TEST(IntervalSuite, RefusesPriorsThatDoNotBelongToTheTruth) {
                     HasSubstr("priors has no entry for attached_mass.mass")));
 }
 
+TEST(IntervalSuite, RefusesWhatItListsTwice) {
+  EXPECT_THAT(Refusal("modelled: [attached_mass, attached_mass]\n"),
+              AllOf(HasSubstr("intervals.yaml:5:"), HasSubstr("listed twice")));
+  EXPECT_THAT(Refusal("modelled: [drag]\nmissing: [drag]\n"),
+              AllOf(HasSubstr("intervals.yaml:6:"), HasSubstr("that the model has")));
+  for (const char* type : {"stiffness_damping", "gravity"})
+    EXPECT_THAT(Refusal(std::string("modelled: [") + type + "]\n"),
+                AllOf(HasSubstr("intervals.yaml:5:"), HasSubstr("part of every model")));
+  EXPECT_THAT(Refusal("priors:\n  - {name: poisson_ratio, mean: 0.4, deviation: 0.01}\n"
+                      "  - {name: poisson_ratio, mean: 0.3, deviation: 0.01}\n"),
+              AllOf(HasSubstr("intervals.yaml:7:"), HasSubstr("listed twice")));
+}
+
 TEST(IntervalTrials, MeasuresTheTruthInDeviationsFromTheCentreOfTheInterval) {
   TrialCase truth;
   truth.young_modulus = 1.1e5;

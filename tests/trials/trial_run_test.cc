@@ -78,8 +78,9 @@ TEST(RedecideOutcome, ReplacesAFalsifiedVerdict) {
   EXPECT_EQ(outcome.error_before, falsified.error_before);
 }
 
-// Of three cases one is open. Its follow-ups cannot be planned, because its experiment is gone.
-TEST(RunFollowUps, FollowsOpenCasesAndKeepsWhyOneCannotBe) {
+// Of three cases one is open. That its experiment is gone is no result: once the file is back, its
+// follow-ups are made.
+TEST(RunFollowUps, FollowsOpenCasesAndKeepsWhyOneFailed) {
   const TemporaryFolder folder;
   TrialCase trial = CaseWithDrag();
   const auto keep = [&](const std::string& name, TrialGroup group, Verdict verdict) {
@@ -96,15 +97,14 @@ TEST(RunFollowUps, FollowsOpenCasesAndKeepsWhyOneCannotBe) {
   keep("open", TrialGroup::kOneEffect, Verdict::kAdequate);
   keep("removed", TrialGroup::kRemoved, Verdict::kAdequate);
   EXPECT_EQ(RunFollowUps(folder.Path(), 2), 0);
-  const std::optional<CaseFollowUps> made = LoadFollowUps(folder / "open");
-  ASSERT_TRUE(made.has_value());
-  EXPECT_THAT(made->message, HasSubstr(kExperimentFile));
-  EXPECT_FALSE(made->best.has_value());
+  EXPECT_FALSE(LoadFollowUps(folder / "open").has_value());
+  EXPECT_THAT(FileContent(folder / "open/follow_up" / kFailureFile), HasSubstr(kExperimentFile));
   EXPECT_FALSE(LoadFollowUps(folder / "closed").has_value());
   EXPECT_FALSE(LoadFollowUps(folder / "removed").has_value());
   const FollowUpReport report = ReportFollowUps(folder.Path());
   EXPECT_EQ(report.open, 1);
-  EXPECT_EQ(report.unpaired, 1);
+  EXPECT_EQ(report.waiting, 1);
+  EXPECT_EQ(report.unpaired, 0);
 }
 
 }  // namespace

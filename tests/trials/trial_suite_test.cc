@@ -33,6 +33,7 @@ TEST(TrialSuite, RefusesEffectsThatCannotBeHidden) {
   EXPECT_THAT(RefusalOfSuite("removed: [expression]\n"), HasSubstr("removed[0]"));
   EXPECT_THAT(RefusalOfSuite("effects: [swelling_field]\n"), HasSubstr("numbers alone"));
   EXPECT_THAT(RefusalOfSuite("effects: [neo_hookean]\n"), HasSubstr("law of every model"));
+  EXPECT_THAT(RefusalOfSuite("effects: [drag, gravity, drag]\n"), HasSubstr("listed twice"));
 }
 
 TEST(TrialSuite, HidesEveryOtherEffectOfTheCatalogue) {

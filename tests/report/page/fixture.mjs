@@ -297,7 +297,7 @@ function plan() {
     pairs: [{ first: 'drag', second: 'mass_damping', lambda_now: 0.1, lambda_then: lambda }], sizes: [{ effect: 'drag', parameter: 'coefficient', unit: 'kg/m', value: 0.4, half_width_now: 0.3, half_width_then: 0.06 }] });
   return {
     schema_version: 1, run: 'bar', verdict: 'ambiguous', rivals: [rival('drag', 'drag of the surrounding medium', 0.52), rival('mass_damping', 'mass-proportional damping', 0.48)],
-    also_left: [], not_predicted: ['plane_contact'], is_separable: true,
+    also_left: [], not_predicted: ['plane_contact'],
     outcomes: [outcome('shake along z', '"bar" with clamp shaken by 2.546 mm along z at 19.4 Hz', 1, 0.99, 25.9, 0.25), outcome('repeat', '"bar" once more', 0.02, 0, 0.12, 0.25),
       { name: 'turn about x', what: '', seconds: 0, message: 'at 0 s clamp would be 2 mm behind the plane of contact', named: {}, probability: 0, pairs: [], sizes: [], protocol: { times_s: [], release_s: null, curves: [] }, experiment: '' }],
   };

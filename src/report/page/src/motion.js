@@ -17,7 +17,7 @@ function explain(scenes) {
   const has = (key) => scenes.some((data) => data?.[key]);
   const parts = [];
   if (has('measured') && has('model')) parts.push(`Filled dots are measured, rings${has('positions') ? ' and the surface' : ''} are predicted.`);
-  else if (has('measured') && has('positions')) parts.push('Red dots are the scan, the surface is the model.');
+  else if (has('measured') && has('positions')) parts.push('Red dots are measured, the surface is the model.');
   else if (has('positions')) parts.push('The surface is the model.');
   parts.push('Drag to turn', has('model') && has('measured') ? '; click a dot to plot it below.' : '.');
   return parts.join(' ').replace(' ;', ';').replace(' .', '.');

@@ -73,8 +73,9 @@ export class Pane {
       this.addSurface(false);
     }
     if (data.pointCount > 0) {
-      const isCloud = !data.model && Boolean(data.positions);  // a scan about a surface
-      const size = isCloud ? 3 : data.pointCount > 2000 ? 4 : data.pointCount > 300 ? 6 : 11;
+      const isDense = data.pointCount > 2000;
+      const isCloud = isDense && !data.model && Boolean(data.positions);  // a scan about a surface
+      const size = isCloud ? 3 : isDense ? 4 : data.pointCount > 300 ? 6 : 11;
       this.measured = this.add(pointCloud(data.pointCount, false, size));
       if (data.model) this.model = this.add(pointCloud(data.pointCount, true, size + 2));
       if (data.model && data.measured) this.arrows = this.add(arrowSet(data.pointCount));

@@ -27,10 +27,15 @@ export function residualChart(frames, store) {
     series: LENGTHS.filter(([key]) => frames[key]).map(([key, label, colour]) => ({ label, x: values, y: scaled(frames[key], 1e3), colour })) });
 }
 
-function forceChart(frames, store) {
+const FORCES = { none: ['forces', 'The model followed the scan without fitted or recorded forces.'], known: ['recorded forces', 'The model followed the scan under the recorded loads.'],
+  fitted: ['fitted forces', 'The model was made to follow the scan with fitted forces, frame by frame.'] };
+const forcesOf = (reconstruction) => FORCES[reconstruction?.record?.forces] ?? FORCES.fitted;
+
+function forceChart(reconstruction, store) {
+  const { frames } = reconstruction;
   const { values, ...axis } = axisOf(frames, store);
   if (values.length < 2) return null;
-  return chart({ ...axis, title: 'Resultant of the fitted forces', y: 'force, N',
+  return chart({ ...axis, title: `Resultant of the ${forcesOf(reconstruction)[0]}`, y: 'force, N',
     series: ['x', 'y', 'z'].filter((one) => frames[`force_${one}_N`]).map((one, k) => ({ label: one, x: values, y: scaled(frames[`force_${one}_N`], 1), colour: ['series-first', 'series-last', 'series-2'][k] })) });
 }
 
@@ -73,10 +78,11 @@ function facts(record) {
 
 // The residual of the frames stands on the first screen where there is room for it.
 export function reconstructionSection({ data, store, isShort }) {
-  const parts = (data.runs ?? []).filter((run) => run.reconstruction).map(({ reconstruction, name }) => [
+  const runs = (data.runs ?? []).filter((run) => run.reconstruction);
+  const parts = runs.map(({ reconstruction, name }) => [
     data.runs.length > 1 ? h('h3', {}, String(name).slice(0, 200)) : null,
-    grid([isShort ? null : residualChart(reconstruction.frames, store), forceChart(reconstruction.frames, store)]), traceCharts(reconstruction.trace), facts(reconstruction.record),
+    grid([isShort ? null : residualChart(reconstruction.frames, store), forceChart(reconstruction, store)]), traceCharts(reconstruction.trace), facts(reconstruction.record),
     reconstruction.record?.warnings?.length ? h('ul', { class: 'notes' }, reconstruction.record.warnings.map((warning) => h('li', {}, warning.slice(0, 500)))) : null]);
-  return section('reconstruction', 'Reconstruction', 'Reconstruction', 'The model was made to follow the scan with fitted forces, frame by frame.', parts);
+  return section('reconstruction', 'Reconstruction', 'Reconstruction', [...new Set(runs.map((run) => forcesOf(run.reconstruction)[1]))].join(' '), parts);
 }
 

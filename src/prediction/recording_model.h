@@ -1,6 +1,6 @@
-// The motion that a model predicts for a recording, and its distance from the measurements.
-#ifndef LACUNA_PREDICTION_PREDICTED_MOTION_H_
-#define LACUNA_PREDICTION_PREDICTED_MOTION_H_
+// The model of one recording, and its prediction of that recording.
+#ifndef LACUNA_PREDICTION_RECORDING_MODEL_H_
+#define LACUNA_PREDICTION_RECORDING_MODEL_H_
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -12,38 +12,11 @@
 #include "experiment/reference_body.h"
 #include "fem/prediction.h"
 #include "prediction/grip_placement.h"
+#include "prediction/misfit.h"
 #include "prediction/misfit_direction.h"
 #include "prediction/prediction_study.h"
-#include "prediction/reaction_misfit.h"
 
 namespace lacuna {
-
-// Predicted minus measured position in one recording, m. A point is a marker or a patch of the
-// surface; it has three components, or one along the surface normal (Observer). Rows are ordered
-// component within point within frame. Rows of a point that was not seen are 0.
-struct Misfit {
-  std::vector<int> frames;   // frames of the recording that the prediction reached
-  int points = 0;            // number of points in each frame
-  Eigen::VectorXd residual;  // components·points·frames
-  Eigen::MatrixXd jacobian;  // ∂residual/∂(direction), one column per direction
-  // points × frames: the number of measurements of which each is the mean, or the weight that a
-  // point has instead (Observed::count); 0: not seen.
-  std::vector<double> count;
-  // points × frames: the deformation gradient F (Observed), rotated into the recording's
-  // coordinates; empty for scans.
-  std::vector<Eigen::Matrix3d> deformation;
-  std::vector<Observed> observed;  // for each frame: what the prediction was compared with
-  // The reaction of each grip that is measured, over the same frames and by the same directions.
-  std::vector<ReactionMisfit> reactions;
-  PredictionSummary summary;
-
-  Eigen::Index Components() const {
-    return count.empty() ? 0 : residual.size() / static_cast<Eigen::Index>(count.size());
-  }
-  // The residual without the contribution of errors in the points' places on the object
-  // (components × points, m).
-  Eigen::VectorXd ResidualWithout(const Eigen::MatrixXd& place_offset) const;
-};
 
 // Results of similar predictions, which save time.
 struct PredictionHints {
@@ -70,13 +43,13 @@ class RecordingModel {
                  const TetMesh& mesh, std::shared_ptr<const Body> body,
                  const SurfacePatches& patches);
 
-  const PredictedRecording& item() const { return item_; }
+  const PredictedRecording& recording() const { return recording_; }
   const Model& model() const { return model_; }
   const Observer& observer() const { return *observer_; }
   int PointCount() const { return observer_->PointCount(); }
   // The measured reactions of the grips.
   const std::vector<MeasuredReaction>& Reactions() const {
-    return item_.recording.object.reactions;
+    return recording_.recording.object.reactions;
   }
   // Null for a recording of scans.
   const MarkerObserver* Markers() const {
@@ -103,8 +76,6 @@ class RecordingModel {
   Misfit Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
                  const std::vector<MisfitDirection>& directions = {},
                  const PredictionHints& hints = {}) const;
-
-  std::vector<int> FittedFrames() const;
 
   // The model whose grips have the placements of these nuisance parameters; that of the recording
   // where all placements are exact.
@@ -133,19 +104,20 @@ class RecordingModel {
   bool Shows(const Observed& observed) const;
 
  private:
-  const PredictionStudy& study_;
-  const PredictedRecording& item_;
-  Model model_;
+  void AddNuisances(const TetMesh& mesh);
   void AddHold(const TetMesh& mesh);
   void AddPlacements();
-  // What a simulated direction perturbs with these nuisance parameters.
-  Perturbation PerturbationBy(const MisfitDirection& direction,
-                              const Eigen::VectorXd& nuisance) const;
   void AddNuisance(const std::string& name, const std::string& unit, double deviation,
                    MisfitDirection direction);
   void RequireThatScansShowTheObject();
+  // What a simulated direction perturbs with these nuisance parameters.
+  Perturbation PerturbationBy(const MisfitDirection& direction,
+                              const Eigen::VectorXd& nuisance) const;
   Eigen::Vector3d Middle() const { return observer_->Places().rowwise().mean(); }
 
+  const PredictionStudy& study_;
+  const PredictedRecording& recording_;
+  Model model_;
   std::shared_ptr<const Observer> observer_;
   // The share of the first scan's points that correspond to the undeformed surface; 1 where it does
   // not show that surface or, in a quasi-static study, where fewer than half of its points do.
@@ -155,4 +127,4 @@ class RecordingModel {
 
 }  // namespace lacuna
 
-#endif  // LACUNA_PREDICTION_PREDICTED_MOTION_H_
+#endif  // LACUNA_PREDICTION_RECORDING_MODEL_H_
