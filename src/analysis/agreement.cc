@@ -115,7 +115,8 @@ struct DeterminedDirections {
   }
 };
 
-// Those of a covariance of differences in typical changes: of variance below 1.
+// The directions that a covariance of differences, in typical changes, determines: those whose
+// variance is below 1.
 DeterminedDirections DeterminedByCovariance(const Eigen::MatrixXd& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
   // A smaller variance than the rounding of the largest one is not known, and may be negative.

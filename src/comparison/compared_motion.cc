@@ -103,10 +103,10 @@ void KeepMotionWithForce(const RecordingModel& model, const Eigen::VectorXd& nui
 }  // namespace
 
 std::optional<std::string> NoteOnScale(const std::vector<FittedParameter>& parameters) {
-  using Verdict = ParameterEstimate::Verdict;
   for (const FittedParameter& parameter : parameters) {
-    const Verdict verdict = parameter.estimate.verdict;
-    if (parameter.unit != "Pa" || (verdict != Verdict::kFlat && verdict != Verdict::kDead))
+    const Determination determination = parameter.estimate.determination;
+    if (parameter.unit != "Pa" ||
+        (determination != Determination::kFlat && determination != Determination::kDead))
       continue;
     return fmt::format(
         "These recordings do not determine {}, whose value is one of many: stresses and forces of "

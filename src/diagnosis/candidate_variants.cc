@@ -87,7 +87,7 @@ std::vector<CandidateVariant> Directions(const BodyExtent& extent) {
   std::vector<CandidateVariant> variants;
   for (int code = 1; code < 27; ++code) {
     const Eigen::Vector3d steps((code + 1) % 3 - 1, (code / 3 + 1) % 3 - 1, (code / 9 + 1) % 3 - 1);
-    // Of two opposite directions one is kept: the one whose last non-zero step is positive.
+    // One of two opposite directions is kept: the one whose last non-zero step is positive.
     const double last = steps[2] != 0 ? steps[2] : steps[1] != 0 ? steps[1] : steps[0];
     if (last <= 0) continue;
     const Eigen::Vector3d axis = (extent.axis * steps).normalized();

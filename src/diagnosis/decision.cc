@@ -216,7 +216,7 @@ Decision Decide(const DecisionInput& input) {
   const std::vector<HypothesisProbability> distinguished = record.probabilities;
   MergeRepeated(&record.probabilities);
   const HypothesisProbability& first = record.probabilities.front();
-  // Of what has been merged, the most probable part is tested.
+  // The most probable part of what has been merged is tested.
   const HypothesisProbability& best =
       *std::find_if(distinguished.begin(), distinguished.end(),
                     [&](const auto& one) { return IsRepeated(one, first); });

@@ -113,7 +113,7 @@ json OriginOfWhatStands(const std::filesystem::path& run) {
 }
 
 // Removes refits that the diagnosis of this origin has left because it was killed at its very end.
-// Those of another diagnosis, which is not complete, stay.
+// The refits of another diagnosis, which is not complete, stay.
 void RemoveRefitsOf(const json& origin, const std::filesystem::path& run) {
   const json refits = Parsed(RefitsFile(run));
   std::error_code ignored;  // a file that remains is harmless

@@ -237,8 +237,8 @@ double PredictiveGain(const EffectRefit& with, const EffectRefit& without,
 
 bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise,
               int tests) {
-  // Of recordings in which the effect is missing, one in so many at most refutes it. More: wrong
-  // effects that fail later in the motion stay possible.
+  // At most one in so many recordings in which the effect is missing refutes it. Larger values keep
+  // more wrong effects that fail later in the motion.
   constexpr double kOneIn = 100;
   return !with.unconverged.empty() || !without.errors.has_held_out ||
          PredictiveGain(with, without, noise) >= -std::log(kOneIn * tests);

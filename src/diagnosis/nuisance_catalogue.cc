@@ -23,16 +23,16 @@ NuisanceEntry RegistrationDriftNuisance();
 
 const std::vector<NuisanceEntry>& NuisanceCatalogue() {
   static const std::vector<NuisanceEntry> entries{
-      // Of the model; all but the extent of the grips are part of every model.
+      // Nuisances of the model, all of which but the extent of the grips are part of every model.
       MeshNuisance(),
       TimeStepNuisance(),
       ShapeNuisance(),
       GripJitterNuisance(),
       GripExtentNuisance(),
-      // Of each grip.
+      // Nuisances of each grip.
       GripPlacementNuisance(),
       GripComplianceNuisance(),
-      // Of each recording.
+      // Nuisances of each recording.
       ClockNuisance(),
       TimeJitterNuisance(),
       BadFrameNuisance(),

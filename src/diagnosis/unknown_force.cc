@@ -48,7 +48,7 @@ Eigen::MatrixXd ResponseOf(const RecordingModel& recording, const ReplayedMotion
   return columns;
 }
 
-// Of the columns of one recording in all rows of the misfit, those combinations that could be seen.
+// The combinations of the columns of one recording, in all rows of the misfit, that could be seen.
 Eigen::MatrixXd VisibleComponents(const Eigen::MatrixXd& columns, const LinearisedMisfit& misfit) {
   const Eigen::MatrixXd white = WhitenedRows(columns, misfit);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
@@ -59,8 +59,8 @@ Eigen::MatrixXd VisibleComponents(const Eigen::MatrixXd& columns, const Linearis
   return columns * eigen.eigenvectors().rightCols(visible);
 }
 
-// Those of one recording, whose points are `part`, in all rows of the misfit; none where it shows
-// no such force.
+// The columns of one recording, whose points are `part`, in all rows of the misfit; none where the
+// recording would not show such a force.
 Eigen::MatrixXd ColumnsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part) {
   const Eigen::MatrixXd none(misfit.residual.size(), 0);

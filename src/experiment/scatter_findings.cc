@@ -88,8 +88,8 @@ void AddDoubtOfSpacing(const RecordingScatter& scatter, double voxel,
                   ScatterBy(scatter), reason, InMillimetres(enough)));
 }
 
-// Of scans only: markers that leave their tracks for a frame may be exchanged, or the body was hit
-// or let go there, which the description of the scatter mentions.
+// Doubts about outliers are raised for scans only: markers that leave their tracks for a frame may
+// be exchanged, or the body was hit or let go there, which the description of the scatter mentions.
 void AddDoubtOfOutliers(const RecordingScatter& scatter, std::vector<std::string>* doubts) {
   if (!scatter.is_of_surface ||
       (!(scatter.outlier_share > kManyOutliers) && !(scatter.worst_share > kManyInFrame)))

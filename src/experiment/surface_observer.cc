@@ -13,7 +13,7 @@ namespace {
 constexpr double kOutlier = 4;    // standard deviations from a patch's median
 constexpr int kFewestPoints = 3;  // fewest points with which a patch counts as seen
 
-// Those of `points` whose errors are not outliers, in the same order.
+// The entries of `points` whose errors are not outliers, in the same order.
 std::vector<int> Agreeing(const std::vector<ScanMatch>& matches, const std::vector<int>& points,
                           double noise) {
   std::vector<double> errors;

@@ -68,7 +68,8 @@ struct TangentLinear::Implementation {
   Eigen::MatrixXd position, velocity, acceleration;
   Eigen::MatrixXd previous_position, previous_velocity, previous_acceleration;
   Eigen::MatrixXd reaction;  // at the current time
-  // Of the step being made: x̃ and ṽ, the right-hand side, the sensitivities at its end.
+  // These belong to the step being made: x̃ and ṽ, the right-hand side, the sensitivities at its
+  // end.
   Eigen::MatrixXd position_history, velocity_history, right, moved;
   std::vector<Memory> inside;   // one per effect of the model
   std::vector<Memory> outside;  // one per perturbation; unused if its effect is in the model

@@ -13,8 +13,6 @@
 namespace lacuna {
 namespace {
 
-using Verdict = ParameterEstimate::Verdict;
-
 // A typical change of a parameter that moves the residual vector by less than this many standard
 // deviations cannot be distinguished from no change.
 constexpr double kNoticeable = 2;
@@ -132,13 +130,13 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Predicti
     const double close =
         kAtBoundWithin * (parameter.typical + (parameter.log_scale ? 0 : std::abs(value)));
     if (influence < kDead) {
-      estimate.verdict = Verdict::kDead;
+      estimate.determination = Determination::kDead;
     } else if (above_min < close || below_max < close) {
-      estimate.verdict = Verdict::kAtBound;
+      estimate.determination = Determination::kAtBound;
     } else if (influence < kNoticeable) {
-      estimate.verdict = Verdict::kFlat;
+      estimate.determination = Determination::kFlat;
     } else if (kNoticeable * estimate.deviation > parameter.typical) {
-      estimate.verdict = Verdict::kTradedOff;
+      estimate.determination = Determination::kTradedOff;
     }
     calibration->estimates.push_back(estimate);
   }

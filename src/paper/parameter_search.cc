@@ -73,7 +73,7 @@ SearchResult Run(const SearchProblem& problem, const SearchControl& control,
   return MinimiseByNlopt(problem, control, library);
 }
 
-// Of an evaluation, or of its slopes.
+// The residual of an evaluation by the chosen measure, or the slopes of that residual.
 template <typename Residuals>
 double Chosen(const Residuals& residuals, ObjectiveMeasure measure) {
   switch (measure) {

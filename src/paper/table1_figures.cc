@@ -49,7 +49,7 @@ struct Optimum {
   double residual_per_point = kNotMeasured;  // m
 };
 
-// Of the first seed.
+// Reads the best points of the searches of the first seed.
 std::vector<Optimum> ReadOptima(const Table1Study& table1, const std::filesystem::path& results) {
   const std::filesystem::path file = results / "table1.json";
   if (!std::filesystem::exists(file))

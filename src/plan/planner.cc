@@ -57,7 +57,7 @@ class Planner {
   bool HasDerivatives(const std::string& effect) const;
   const CandidateEffect& Find(const WeighedHypothesis& hypothesis) const;
   void Predict(const JoinedSpace& space, PlannedOutcome* outcome) const;
-  // Of each rival, to first order.
+  // The evidence of each rival, by its name, to first order.
   std::map<std::string, double> EvidenceIn(const HypothesisSpace& space,
                                            const ProjectedHypotheses& projected,
                                            const Eigen::VectorXd& toward) const;

@@ -17,8 +17,8 @@
 namespace lacuna {
 namespace {
 
-// Of the stock variants: a share of the object's size and of its mass, large enough to be seen and
-// small enough to leave the experiment what it is.
+// The stock variants shake by this share of the object's size and add this share of its mass, which
+// is large enough to be seen and small enough to leave the experiment what it is.
 constexpr double kShakeShare = 0.03, kWeightShare = 0.1, kWeightRadius = 0.03;
 // Periods of a stock variant's shaking in one recording; fewer where its frames or the time step
 // cannot resolve as many.

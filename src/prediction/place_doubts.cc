@@ -22,7 +22,8 @@ constexpr double kFarOff = 10;
 // The share of the distance that remains where a mistake explains it. The rest is deformation, such
 // as the sag of an object that was mirrored. Larger: a large deformation is taken for a mistake.
 constexpr double kRemains = 0.25;
-// The same of a rotation, which the deflection of a slender body resembles, and the least angle.
+// The largest such share for a rotation, which the deflection of a slender body resembles, and the
+// smallest angle of one.
 constexpr double kRemainsOfTurn = 0.1, kLeastTurn = std::numbers::pi / 3;
 // How often a unit of length is larger than one with which it is confused, and its rounding.
 constexpr std::array kUnitRatios{10.0, 100.0, 1000.0, 25.4};

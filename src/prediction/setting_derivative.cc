@@ -56,8 +56,9 @@ class SettingDifference final : public CloneableEffect<SettingDifference> {
 
  private:
   void SetEffect(std::shared_ptr<const Effect> effect) {
-    // Of the plausible size or of the distance to a bound, at which the force may be singular: the
-    // truncation error is 1e-8 of the derivative then, and the rounding error 1e-12 of the force.
+    // The step is this share of the plausible size, or of the distance to a bound, at which the
+    // force may be singular: the truncation error is 1e-8 of the derivative then, and the rounding
+    // error 1e-12 of the force.
     constexpr double kShare = 1e-4;
     effect_ = std::move(effect);
     Eigen::VectorXd values = effect_->Parameters();

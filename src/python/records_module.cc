@@ -76,7 +76,8 @@ void DefineParameters(py::module_* module) {
           "high", [](const FittedParameter& p) { return p.estimate.high; },
           "upper end of the 95 % interval")
       .def_property_readonly(
-          "verdict", [](const FittedParameter& p) { return VerdictName(p.estimate.verdict); },
+          "verdict",
+          [](const FittedParameter& p) { return DeterminationName(p.estimate.determination); },
           "whether the recordings determine it: \"pinned down\", \"traded off\", ...")
       .def("__repr__", [](const FittedParameter& p) {
         const std::string limit = p.at_limit ? fmt::format("at_limit {:.4g}: ", *p.at_limit) : "";

@@ -16,18 +16,17 @@ namespace lacuna {
 namespace {
 
 using nlohmann::json;
-using Verdict = ParameterEstimate::Verdict;
 
 constexpr int kSchemaVersion = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-const std::vector<std::pair<Verdict, std::string>>& VerdictNames() {
-  static const std::vector<std::pair<Verdict, std::string>> names{
-      {Verdict::kPinnedDown, "pinned down"},
-      {Verdict::kDead, "dead"},
-      {Verdict::kFlat, "flat"},
-      {Verdict::kTradedOff, "traded off"},
-      {Verdict::kAtBound, "at its bound"}};
+const std::vector<std::pair<Determination, std::string>>& DeterminationNames() {
+  static const std::vector<std::pair<Determination, std::string>> names{
+      {Determination::kPinnedDown, "pinned down"},
+      {Determination::kDead, "dead"},
+      {Determination::kFlat, "flat"},
+      {Determination::kTradedOff, "traded off"},
+      {Determination::kAtBound, "at its bound"}};
   return names;
 }
 
@@ -170,7 +169,7 @@ std::optional<NearBound> FindNearBound(const ParameterEstimate& estimate, bool l
                                        double low, double high) {
   constexpr double kNear = 0.01;  // of the distance between the bounds
   const bool is_determined = std::isfinite(estimate.low) && std::isfinite(estimate.high);
-  if (!is_determined && estimate.verdict != Verdict::kAtBound) return std::nullopt;
+  if (!is_determined && estimate.determination != Determination::kAtBound) return std::nullopt;
   const auto scaled = [log_scale](double value) {
     return log_scale ? (value > 0 ? std::log(value) : -kInfinity) : value;
   };
@@ -208,7 +207,7 @@ json EstimateToJson(const ParameterEstimate& estimate) {
           {"high_95", NumberOrNull(estimate.high)},
           {"deviation_from_data", NumberOrNull(estimate.deviation)},
           {"deviation", NumberOrNull(estimate.posterior_deviation)},
-          {"verdict", VerdictName(estimate.verdict)},
+          {"verdict", DeterminationName(estimate.determination)},
           {"most_correlated_with", estimate.traded_with},
           {"correlation", estimate.correlation}};
 }
@@ -220,16 +219,16 @@ ParameterEstimate EstimateFromJson(const json& value) {
   estimate.high = NumberOr(value.at("high_95"), kInfinity);
   estimate.deviation = NumberOr(value.at("deviation_from_data"), kInfinity);
   estimate.posterior_deviation = NumberOr(value.at("deviation"), kInfinity);
-  for (const auto& [verdict, name] : VerdictNames())
-    if (name == value.at("verdict")) estimate.verdict = verdict;
+  for (const auto& [determination, name] : DeterminationNames())
+    if (name == value.at("verdict")) estimate.determination = determination;
   estimate.traded_with = value.at("most_correlated_with");
   estimate.correlation = value.at("correlation");
   return estimate;
 }
 
-std::string VerdictName(Verdict verdict) {
-  for (const auto& [value, name] : VerdictNames())
-    if (value == verdict) return name;
+std::string DeterminationName(Determination determination) {
+  for (const auto& [value, name] : DeterminationNames())
+    if (value == determination) return name;
   return "";
 }
 

@@ -119,7 +119,7 @@ bool HasPlannableRecording(const CalibrationRecord& record);
 std::optional<double> RmsOfNoise(const CalibrationRecord& record);
 
 // The name in files and reports, e.g. "traded off".
-std::string VerdictName(ParameterEstimate::Verdict verdict);
+std::string DeterminationName(Determination determination);
 
 // Infinite numbers become null.
 nlohmann::json EstimateToJson(const ParameterEstimate& estimate);

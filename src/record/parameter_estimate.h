@@ -10,13 +10,13 @@
 
 namespace lacuna {
 
-struct ParameterEstimate {
-  // kPinnedDown: the data determine the parameter. kDead: the predictions do not depend on it.
-  // kFlat: they do, but the effect of a typical change is within the noise. kTradedOff: changes
-  // of other parameters can compensate for its changes. kAtBound: the best value lies on a bound,
-  // so the interval has little meaning.
-  enum class Verdict { kPinnedDown, kDead, kFlat, kTradedOff, kAtBound };
+// kPinnedDown: the data determine the parameter. kDead: the predictions do not depend on it. kFlat:
+// they do, but the effect of a typical change is within the noise. kTradedOff: changes of other
+// parameters can compensate for its changes. kAtBound: the best value lies on a bound, so that the
+// interval has little meaning.
+enum class Determination { kPinnedDown, kDead, kFlat, kTradedOff, kAtBound };
 
+struct ParameterEstimate {
   double value = 0;  // θ, SI
   // Standard deviations of φ with all other parameters free: from the data alone, and from data and
   // priors together. Infinite where the data do not determine the parameter.
@@ -26,7 +26,7 @@ struct ParameterEstimate {
   // known errors of the model, for which it may have another centre than `value`.
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  Verdict verdict = Verdict::kPinnedDown;
+  Determination determination = Determination::kPinnedDown;
   std::string traded_with;  // name of the parameter with the strongest posterior correlation
   double correlation = 0;   // that correlation, −1 to 1
 };

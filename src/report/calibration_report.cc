@@ -30,9 +30,9 @@ std::string TableHeader() {
 
 void AppendParameter(const FittedParameter& parameter, TableText* table) {
   const ParameterEstimate& estimate = parameter.estimate;
-  std::string note = VerdictName(estimate.verdict);
-  if (estimate.verdict == ParameterEstimate::Verdict::kPinnedDown) note.clear();
-  if (estimate.verdict == ParameterEstimate::Verdict::kTradedOff)
+  std::string note = DeterminationName(estimate.determination);
+  if (estimate.determination == Determination::kPinnedDown) note.clear();
+  if (estimate.determination == Determination::kTradedOff)
     note +=
         fmt::format(" with {} (correlation {:.2f})", estimate.traded_with, estimate.correlation);
   const double at_limit = parameter.at_limit.value_or(estimate.value);
@@ -42,7 +42,7 @@ void AppendParameter(const FittedParameter& parameter, TableText* table) {
     table->moved = true;
   }
   if (const auto& near = parameter.near_bound;
-      near && estimate.verdict != ParameterEstimate::Verdict::kAtBound)
+      near && estimate.determination != Determination::kAtBound)
     note += fmt::format("{}near its {} bound {:.4g}", note.empty() ? "" : "; ",
                         near->is_upper ? "upper" : "lower", near->bound);
   table->text += fmt::format("  {:34} {:>12.4g} {:>12.4g} … {:<10.4g}  {:6} {}\n", parameter.name,

@@ -160,7 +160,7 @@ CaseOutcome OutcomeOf(const CalibrationRecord& record) {
     numbers.emplace_back(parameter.name + "_low" + unit, parameter.estimate.low);
     numbers.emplace_back(parameter.name + "_high" + unit, parameter.estimate.high);
     outcome.words.emplace_back(parameter.name + "_verdict",
-                               VerdictName(parameter.estimate.verdict));
+                               DeterminationName(parameter.estimate.determination));
   }
   numbers.emplace_back("predictions", record.predictions);
   numbers.emplace_back("nodes", static_cast<double>(record.mesh.node_count));

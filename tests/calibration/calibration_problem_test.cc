@@ -156,7 +156,7 @@ TEST(CalibrationProblem, RecoversWhatWasFilmed) {
   const ParameterEstimate& modulus = fit.estimates[0];
   // A coarser mesh of the same elements is 2 % stiffer, longer steps are 1 % slower.
   EXPECT_NEAR(modulus.value, truth.young_modulus, 0.04 * truth.young_modulus);
-  EXPECT_EQ(modulus.verdict, ParameterEstimate::Verdict::kPinnedDown);
+  EXPECT_EQ(modulus.determination, Determination::kPinnedDown);
   EXPECT_LT(modulus.low, modulus.value);
   EXPECT_GT(modulus.high, modulus.value);
   const double width = modulus.high - modulus.low;

@@ -118,7 +118,7 @@ TEST_F(HangingBarView, DeterminesTheModulusFromFarStarts) {
     const Calibration fit = FitOf(problem);
     ASSERT_TRUE(fit.usable) << fit.message;
     const ParameterEstimate& modulus = fit.estimates[0];
-    EXPECT_EQ(modulus.verdict, ParameterEstimate::Verdict::kPinnedDown);
+    EXPECT_EQ(modulus.determination, Determination::kPinnedDown);
     EXPECT_LT(modulus.low, kYoungModulus) << start;
     EXPECT_GT(modulus.high, kYoungModulus) << start;
     // The pixels at the outline are half a millimetre wide.

@@ -30,7 +30,7 @@ TEST(FitStore, GivesBackWhatWasKeptToTheLastBit) {
   calibration.predictions = 17;
   ParameterEstimate open;
   open.value = 0.1;
-  open.verdict = ParameterEstimate::Verdict::kFlat;
+  open.determination = Determination::kFlat;
   calibration.estimates = {open};
   FitStore(file, {{"fit", "a"}}).Keep("key", calibration);
 
@@ -50,7 +50,7 @@ TEST(FitStore, GivesBackWhatWasKeptToTheLastBit) {
   EXPECT_EQ(kept->estimates[0].value, 0.1);
   EXPECT_EQ(kept->estimates[0].deviation, std::numeric_limits<double>::infinity());
   EXPECT_EQ(kept->estimates[0].low, -std::numeric_limits<double>::infinity());
-  EXPECT_EQ(kept->estimates[0].verdict, ParameterEstimate::Verdict::kFlat);
+  EXPECT_EQ(kept->estimates[0].determination, Determination::kFlat);
 }
 
 TEST(FitStore, HasNothingOfAnotherFitOrOfADamagedFile) {

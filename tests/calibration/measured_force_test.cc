@@ -42,7 +42,7 @@ TEST(MeasuredForce, DeterminesTheModulusOfABarThatIsStretched) {
   const Calibration fit = FitOf(problem);
   ASSERT_TRUE(fit.usable) << fit.message;
   const ParameterEstimate& modulus = fit.estimates.at(0);
-  EXPECT_EQ(modulus.verdict, ParameterEstimate::Verdict::kPinnedDown);
+  EXPECT_EQ(modulus.determination, Determination::kPinnedDown);
   EXPECT_LT(modulus.low, truth.young_modulus);
   EXPECT_GT(modulus.high, truth.young_modulus);
   // 12 readings with σ = 10 mN and an unknown tare: the slope over 0 to 5.5 mm, of about 3 N, is
@@ -77,10 +77,9 @@ TEST(MeasuredForce, WithoutItTheModulusScalesOut) {
   const CalibrationProblem problem(study, PulledBarMesh());
   const Calibration fit = FitOf(problem);
   ASSERT_EQ(fit.estimates.size(), 1u);
-  const auto verdict = fit.estimates[0].verdict;
-  EXPECT_TRUE(verdict == ParameterEstimate::Verdict::kFlat ||
-              verdict == ParameterEstimate::Verdict::kDead)
-      << static_cast<int>(verdict);
+  const auto determination = fit.estimates[0].determination;
+  EXPECT_TRUE(determination == Determination::kFlat || determination == Determination::kDead)
+      << static_cast<int>(determination);
   EXPECT_TRUE(SharesOfData(problem, fit.parameters).empty());
 }
 
@@ -97,7 +96,7 @@ TEST(MeasuredTorque, DeterminesTheModulusOfABarThatIsTwisted) {
   const Calibration fit = FitOf(problem);
   ASSERT_TRUE(fit.usable) << fit.message;
   const ParameterEstimate& modulus = fit.estimates.at(0);
-  EXPECT_EQ(modulus.verdict, ParameterEstimate::Verdict::kPinnedDown);
+  EXPECT_EQ(modulus.determination, Determination::kPinnedDown);
   EXPECT_LT(modulus.low, truth.young_modulus);
   EXPECT_GT(modulus.high, truth.young_modulus);
   EXPECT_LT(modulus.high - modulus.low, 0.05 * truth.young_modulus);

@@ -28,9 +28,9 @@ TEST(ComparedMotion, SaysThatForcesAreOfUnknownScaleWhereAModulusIsNotDetermined
   modulus.name = "young_modulus";
   modulus.unit = "Pa";
   ratio.name = "poisson_ratio";
-  ratio.estimate.verdict = ParameterEstimate::Verdict::kFlat;
+  ratio.estimate.determination = Determination::kFlat;
   EXPECT_FALSE(NoteOnScale({modulus, ratio}));
-  modulus.estimate.verdict = ParameterEstimate::Verdict::kFlat;
+  modulus.estimate.determination = Determination::kFlat;
   EXPECT_THAT(NoteOnScale({ratio, modulus}),
               testing::Optional(HasSubstr("do not determine young_modulus")));
 }

@@ -10,8 +10,6 @@
 namespace lacuna {
 namespace {
 
-using Verdict = ParameterEstimate::Verdict;
-
 // a·exp(−t/τ) at 40 times, with noise of a given deviation, which is also the unit of the residual.
 struct Decay {
   Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(40, 0, 2);
@@ -55,7 +53,7 @@ TEST(Calibration, RecoversParametersWithinItsIntervals) {
     EXPECT_NEAR(found.rms, 1, 0.5);
     const double truth[2] = {2, 0.7};
     for (int k = 0; k < 2; ++k) {
-      EXPECT_EQ(found.estimates[k].verdict, Verdict::kPinnedDown);
+      EXPECT_EQ(found.estimates[k].determination, Determination::kPinnedDown);
       covered[k] += found.estimates[k].low <= truth[k] && truth[k] <= found.estimates[k].high;
     }
   }
@@ -119,13 +117,13 @@ TEST(Calibration, ReportsParametersThatTheDataDoNotDetermine) {
   const Calibration found = Calibrate(
       {{.name = "a"}, {.name = "b", .prior_deviation = 3}, {.name = "c"}, {.name = "d"}}, predict);
   ASSERT_EQ(found.estimates.size(), 4u);
-  EXPECT_EQ(found.estimates[0].verdict, Verdict::kTradedOff);
+  EXPECT_EQ(found.estimates[0].determination, Determination::kTradedOff);
   EXPECT_EQ(found.estimates[0].traded_with, "b");
-  EXPECT_EQ(found.estimates[1].verdict, Verdict::kTradedOff);
+  EXPECT_EQ(found.estimates[1].determination, Determination::kTradedOff);
   EXPECT_NEAR(found.estimates[1].posterior_deviation, 3, 1e-3);  // that of the prior
-  EXPECT_EQ(found.estimates[2].verdict, Verdict::kDead);
+  EXPECT_EQ(found.estimates[2].determination, Determination::kDead);
   EXPECT_TRUE(std::isinf(found.estimates[2].posterior_deviation));
-  EXPECT_EQ(found.estimates[3].verdict, Verdict::kFlat);
+  EXPECT_EQ(found.estimates[3].determination, Determination::kFlat);
 }
 
 TEST(Calibration, DoesNotDependOnTheUnitsOfOtherParameters) {
@@ -146,7 +144,7 @@ TEST(Calibration, StaysWithinBoundsAndReportsIt) {
   parameters[0].max = 1.5;
   const Calibration found = Calibrate(parameters, Decay(2, 0.7, 1));
   EXPECT_DOUBLE_EQ(found.parameters[0], 1.5);
-  EXPECT_EQ(found.estimates[0].verdict, Verdict::kAtBound);
+  EXPECT_EQ(found.estimates[0].determination, Determination::kAtBound);
 }
 
 // Two kinds of damping with nearly the same effect, both bounded below by 0. The fit starts near
@@ -202,13 +200,13 @@ TEST(Calibration, EndsAtTheBoundIfItsOnlyParameterWouldFitBeyondIt) {
     EXPECT_TRUE(found.usable) << found.message;
     EXPECT_EQ(found.parameters[0], 0);
     EXPECT_GE(found.iterations, 0);
-    EXPECT_EQ(found.estimates[0].verdict, ParameterEstimate::Verdict::kAtBound);
+    EXPECT_EQ(found.estimates[0].determination, Determination::kAtBound);
   }
 }
 
 // In SI units the value and its bounds differ by less than a millionth.
 TEST(Calibration, ASmallParameterOnALogarithmicScaleIsNotAtItsBound) {
-  const auto verdict = [](double wanted) {
+  const auto determination = [](double wanted) {
     const auto predict = [&](const Eigen::VectorXd& at, bool) {
       Prediction prediction{
           true, "", Eigen::VectorXd::Constant(3, 100 * std::log(at[0] / wanted)), {}};
@@ -218,10 +216,10 @@ TEST(Calibration, ASmallParameterOnALogarithmicScaleIsNotAtItsBound) {
     return Calibrate({{.name = "a", .start = 1e-6, .min = 1e-7, .max = 1e-5, .log_scale = true}},
                      predict)
         .estimates.at(0)
-        .verdict;
+        .determination;
   };
-  EXPECT_EQ(verdict(2e-7), ParameterEstimate::Verdict::kPinnedDown);
-  EXPECT_EQ(verdict(5e-8), ParameterEstimate::Verdict::kAtBound);
+  EXPECT_EQ(determination(2e-7), Determination::kPinnedDown);
+  EXPECT_EQ(determination(5e-8), Determination::kAtBound);
 }
 
 TEST(Calibration, ApproachesAnOpenBoundInParts) {

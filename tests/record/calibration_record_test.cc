@@ -35,7 +35,7 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   parameter.name = "material.young_modulus";
   parameter.estimate.value = 2;
   parameter.estimate.low = 1;
-  parameter.estimate.verdict = ParameterEstimate::Verdict::kTradedOff;
+  parameter.estimate.determination = Determination::kTradedOff;
   parameter.near_bound = {true, 2.5};
   parameter.shares = DataShares{0.2, 0.05, 0.75};
   record.held = {{"density", "kg/m^3", {1070}}, {"gravity.acceleration", "m/s^2", {0, 0, -9.81}}};
@@ -69,7 +69,7 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   ASSERT_EQ(read.parameters.size(), 1u);
   EXPECT_EQ(read.parameters[0].estimate.low, 1);
   EXPECT_EQ(read.parameters[0].estimate.high, INFINITY);
-  EXPECT_EQ(read.parameters[0].estimate.verdict, ParameterEstimate::Verdict::kTradedOff);
+  EXPECT_EQ(read.parameters[0].estimate.determination, Determination::kTradedOff);
   ASSERT_TRUE(read.parameters[0].near_bound);
   EXPECT_TRUE(read.parameters[0].near_bound->is_upper);
   EXPECT_EQ(read.parameters[0].near_bound->bound, 2.5);

@@ -23,7 +23,7 @@ TEST(CalibrationReport, ShowsParametersErrorsAndConflicts) {
   parameter.estimate.low = 11;
   parameter.estimate.high = 13;
   parameter.estimate.posterior_deviation = 0.5;
-  parameter.estimate.verdict = ParameterEstimate::Verdict::kTradedOff;
+  parameter.estimate.determination = Determination::kTradedOff;
   parameter.estimate.traded_with = "drag.coefficient";
   parameter.estimate.correlation = 0.97;
   parameter.at_limit = 14;
