@@ -133,7 +133,8 @@ DeterminedDirections DeterminedByCovariance(const Eigen::MatrixXd& covariance) {
   return determined;
 }
 
-// Those of an information matrix, the inverse of a covariance: of information above 1.
+// The directions that an information matrix, the inverse of a covariance, determines: those whose
+// information is above 1.
 DeterminedDirections DeterminedByInformation(const Eigen::MatrixXd& information) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
   DeterminedDirections determined;

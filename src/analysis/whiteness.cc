@@ -15,7 +15,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kFewestFrames = 10;  // of a row that is tested
-constexpr double kWork = 5e8;      // multiplications of one test, about half a second
+// Multiplications of one randomisation test, about half a second. More: p-values of long series are
+// known better, and a comparison takes longer.
+constexpr double kWork = 5e8;
+constexpr double kFewestTrials = 199, kMostTrials = 999;
 
 struct Products {
   double sum = 0, first_squares = 0, second_squares = 0;
@@ -83,6 +86,18 @@ void Shuffle(std::vector<int>* order, std::mt19937* random) {
   for (size_t k = order->size(); k > 1; --k) std::swap((*order)[k - 1], (*order)[(*random)() % k]);
 }
 
+// The p-value of a randomisation test: the share of the random arrangements of the data whose
+// statistic, arranged(&random), is at least that of the data, which counts as one of them. `cost`:
+// multiplications of one statistic. Every call uses the same random numbers.
+template <typename Arranged>
+double RandomisationProbability(double observed, double cost, const Arranged& arranged) {
+  const int trials = static_cast<int>(std::clamp(kWork / cost, kFewestTrials, kMostTrials));
+  std::mt19937 random(1);
+  int as_large = 0;
+  for (int trial = 0; trial < trials; ++trial) as_large += arranged(&random) >= observed;
+  return (1.0 + as_large) / (1.0 + trials);
+}
+
 // One row per point; its shifts copy contiguous numbers.
 using PointRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -120,24 +135,19 @@ double SumOfSquaredCorrelations(const std::vector<PointRows>& axes) {
 // The p-value of the test by random circular shifts.
 double ProbabilityByShifts(const std::vector<PointRows>& axes) {
   const Eigen::Index points = axes.front().rows(), frames = axes.front().cols();
-  const double observed = SumOfSquaredCorrelations(axes);
   const double cost = static_cast<double>(axes.size()) *
                       static_cast<double>(points * frames * std::min(points, frames));
-  const int trials = static_cast<int>(std::clamp(kWork / cost, 199.0, 999.0));
-  std::mt19937 random(1);
   std::vector<PointRows> shifted = axes;
-  int as_large = 0;
-  for (int trial = 0; trial < trials; ++trial) {
+  return RandomisationProbability(SumOfSquaredCorrelations(axes), cost, [&](std::mt19937* random) {
     for (Eigen::Index k = 0; k < points; ++k) {
-      const Eigen::Index lag = static_cast<Eigen::Index>(random()) % frames;
+      const Eigen::Index lag = static_cast<Eigen::Index>((*random)()) % frames;
       for (size_t axis = 0; axis < axes.size(); ++axis) {
         shifted[axis].row(k).head(lag) = axes[axis].row(k).tail(lag);
         shifted[axis].row(k).tail(frames - lag) = axes[axis].row(k).head(frames - lag);
       }
     }
-    as_large += SumOfSquaredCorrelations(shifted) >= observed;
-  }
-  return (1.0 + as_large) / (1.0 + trials);
+    return SumOfSquaredCorrelations(shifted);
+  });
 }
 
 // Least squares over a logarithmic grid. The sum is smooth in ln ℓ, so a spacing of 2 % suffices.
@@ -211,17 +221,13 @@ TimeWhiteness WhitenessInTime(const Eigen::MatrixXd& series) {
   const Eigen::MatrixXd known = chosen.array().isNaN().select(0.0, chosen);
   whiteness.statistic = LjungBoxStatistic(known, seen, whiteness.lags);
   const double cost = 1.0 * static_cast<double>(known.size()) * whiteness.lags;
-  const int trials = static_cast<int>(std::clamp(kWork / cost, 199.0, 999.0));
   std::vector<int> order(static_cast<size_t>(known.cols()));
   std::iota(order.begin(), order.end(), 0);
-  std::mt19937 random(1);
-  int as_large = 0;
-  for (int trial = 0; trial < trials; ++trial) {
-    Shuffle(&order, &random);
-    as_large += LjungBoxStatistic(known(Eigen::all, order), seen(Eigen::all, order),
-                                  whiteness.lags) >= whiteness.statistic;
-  }
-  whiteness.p_value = (1.0 + as_large) / (1.0 + trials);
+  whiteness.p_value =
+      RandomisationProbability(whiteness.statistic, cost, [&](std::mt19937* random) {
+        Shuffle(&order, random);
+        return LjungBoxStatistic(known(Eigen::all, order), seen(Eigen::all, order), whiteness.lags);
+      });
   return whiteness;
 }
 

@@ -285,14 +285,16 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
   const Eigen::VectorXd start = problem.Start();
   Calibration calibration =
       fitter.Whole(start, beginning != nullptr ? *beginning : fitter.FirstPart(start));
-  // Where the body hardly deforms over the short horizon, that can lead far away from a good start.
-  if (calibration.start_rms < calibration.rms && !fitter.IsOutOfBudget()) {
-    Calibration direct = fitter.Stage("fit from the start values", kUnlimited, start);
-    if (direct.usable && direct.rms < calibration.rms) {
-      direct.start_rms = calibration.start_rms;
-      calibration = std::move(direct);
+  const auto keep_better = [&](Calibration other) {
+    if (other.usable && (!calibration.usable || other.rms < calibration.rms)) {
+      other.start_rms = calibration.start_rms;
+      calibration = std::move(other);
     }
-  }
+    calibration.predictions = fitter.evaluations();
+  };
+  // Where the body hardly deforms over the short horizon, that can lead far away from a good start.
+  if (calibration.start_rms < calibration.rms && !fitter.IsOutOfBudget())
+    keep_better(fitter.Stage("fit from the start values", kUnlimited, start));
   if (calibration.usable && calibration.rms <= kLocalMinimumSuspected) return calibration;
   // Equilibria have no period, so that other moduli lead to the same minimum. FindFarStart has
   // tried others for scans.
@@ -314,13 +316,8 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
     least = rms;
     nearest = std::move(first);
   }
-  if (nearest.parameters.size() > 0 && !fitter.IsOutOfBudget()) {
-    Calibration other = fitter.Whole(nearest.parameters, nearest);
-    if (other.usable && (!calibration.usable || other.rms < calibration.rms)) {
-      other.start_rms = calibration.start_rms;
-      calibration = std::move(other);
-    }
-  }
+  if (nearest.parameters.size() > 0 && !fitter.IsOutOfBudget())
+    keep_better(fitter.Whole(nearest.parameters, nearest));
   calibration.predictions = fitter.evaluations();
   return calibration;
 }

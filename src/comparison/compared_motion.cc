@@ -51,16 +51,17 @@ bool MatchesFit(const RecordedResiduals& residuals, const ReplayedMotion& motion
   return true;
 }
 
+// `over_noise`: LengthsOverNoise() of the whole recording.
 void AddMotionTrends(const ReplayedMotion& motion, const RecordedResiduals& residuals,
-                     const FrameRange& range, const ComparedRecording& recording,
+                     const Eigen::MatrixXd& over_noise, const FrameRange& range,
                      ComparedPart* part) {
   const auto in_range = [&](const Eigen::MatrixXd& all) -> Eigen::MatrixXd {
     return all.middleCols(range.first, range.Count());
   };
   const Eigen::VectorXd error = RmsOfFrames(PointLengths(in_range(residuals.difference)));
-  const Eigen::VectorXd over_noise = RmsOfFrames(in_range(LengthsOverNoise(residuals, recording)));
+  const Eigen::VectorXd multiple = RmsOfFrames(in_range(over_noise));
   const auto add_trend = [&](const char* quantity, const Eigen::VectorXd& values) {
-    part->trends.push_back(TrendWith(quantity, values, error, over_noise));
+    part->trends.push_back(TrendWith(quantity, values, error, multiple));
   };
   add_trend("strain", RmsOfFrames(in_range(motion.strain)));
   add_trend("strain_rate_per_s", RmsOfFrames(in_range(motion.strain_rate)));
@@ -154,15 +155,16 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
       continue;
     }
     recording.height_by_gravity = motion.up_from_gravity;
+    const Eigen::MatrixXd over_noise = LengthsOverNoise(residuals, recording);
     const std::vector<FrameRange> ranges = FittedAndHeldOutRanges(residuals);
     for (size_t p = 0; p < ranges.size(); ++p)
-      AddMotionTrends(motion, residuals, ranges[p], recording, &recording.parts[p]);
+      AddMotionTrends(motion, residuals, over_noise, ranges[p], &recording.parts[p]);
     recording.loaded_most = FindLoadedMost(model.model(), motion);
     comparison->forces[r] = EstimateUnexplainedForce(model, motion, problem.ErrorsOf(model));
     recording.force = comparison->forces[r]->record;
-    recording.field_frames = WriteComparisonFields(model, residuals, motion, *comparison->forces[r],
-                                                   LengthsOverNoise(residuals, recording),
-                                                   run / "comparison" / std::to_string(r));
+    recording.field_frames =
+        WriteComparisonFields(model, residuals, motion, *comparison->forces[r], over_noise,
+                              run / "comparison" / std::to_string(r));
     KeepMotionWithForce(model, nuisance, *comparison->forces[r], comparison->record.fit,
                         MotionFile(run, r));
     progress->Report(static_cast<int64_t>(r) + 1);

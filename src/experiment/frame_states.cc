@@ -15,6 +15,7 @@
 #include "core/median.h"
 #include "core/npy.h"
 #include "experiment/grip_tracks.h"
+#include "geometry/finite_columns.h"
 #include "geometry/nearest.h"
 
 namespace lacuna {
@@ -39,10 +40,7 @@ void SplitTracked(const Recording& recording, const Frame& frame, int hold_out_e
   const TrackedRows rows = SplitRows(recording, points.cols(), hold_out_every);
   state->tracked = points(Eigen::all, rows.used);
   state->held_out = points(Eigen::all, rows.held_out);
-  std::vector<Eigen::Index> seen;
-  for (Eigen::Index j = 0; j < state->tracked.cols(); ++j)
-    if (state->tracked.col(j).allFinite()) seen.push_back(j);
-  state->cloud.points = state->tracked(Eigen::all, seen);
+  state->cloud.points = state->tracked(Eigen::all, FiniteColumns(state->tracked));
 }
 
 std::string NoteOnOrientation(const Orientation& orientation) {

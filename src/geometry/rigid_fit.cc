@@ -5,19 +5,14 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/finite_columns.h"
+
 namespace lacuna {
 namespace {
 
 // An extent below this fraction of the largest counts as none. The errors of points on a nearly
 // straight line would cause a rotation about it that is twenty times the rotation across it.
 constexpr double kWidth = 0.05;
-
-std::vector<Eigen::Index> SeenInBoth(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
-  std::vector<Eigen::Index> seen;
-  for (Eigen::Index k = 0; k < from.cols(); ++k)
-    if (from.col(k).allFinite() && to.col(k).allFinite()) seen.push_back(k);
-  return seen;
-}
 
 Eigen::Matrix3Xd About(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& centre) {
   return points.colwise() - centre;
@@ -37,7 +32,7 @@ SpannedAxes AxesOf(const Eigen::Matrix3Xd& points) {
 }
 
 RigidFit FitRigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
-  const std::vector<Eigen::Index> seen = SeenInBoth(from, to);
+  const std::vector<Eigen::Index> seen = FiniteColumns(from + to);
   RigidFit fit;
   if (seen.empty()) return fit;
   const Eigen::Matrix3Xd points = from(Eigen::all, seen), images = to(Eigen::all, seen);
@@ -68,7 +63,7 @@ RigidFit FitRigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to
 
 Eigen::Affine3d FitAffineMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
                                 const RigidFit& rigid) {
-  const std::vector<Eigen::Index> seen = SeenInBoth(from, to);
+  const std::vector<Eigen::Index> seen = FiniteColumns(from + to);
   Eigen::Affine3d motion(rigid.motion);
   if (rigid.span < 1) return motion;
   const Eigen::Matrix3Xd points = from(Eigen::all, seen), images = to(Eigen::all, seen);

@@ -11,9 +11,9 @@
 #include "effects/attached_mass.h"
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
-#include "effects/plane_contact.h"
 #include "geometry/rotation.h"
 #include "geometry/tri_mesh.h"
+#include "plan/clamp_clearance.h"
 #include "scan/marker_frames.h"
 
 namespace lacuna {
@@ -23,8 +23,6 @@ namespace {
 constexpr double kLeaves = 2, kArrives = 1;
 // Poses per frame of a path that is written anew; more: a smoother path, a larger file.
 constexpr int kPosesPerFrame = 10;
-// A clamp may enter a plane of contact by this much, m, as rounding makes it.
-constexpr double kTouching = 1e-6;
 
 // The parts that are held, as grips with a motion: a part that is fixed has a path on which it
 // rests, so that it can be turned and shaken like any other.
@@ -260,47 +258,6 @@ std::shared_ptr<const Effect> AttachedWeight(const Protocol::Weight& weight,
   return MakeAttachedMass(weight.mass, weight.place, weight.radius, gravity);
 }
 
-// How far the lowest node of the grip's region reaches above the plane, m, at the lowest of these
-// times (s); negative behind it. With the time at which it does.
-struct Clearance {
-  double height = std::numeric_limits<double>::infinity(), time = 0;
-};
-Clearance ClearanceOf(const RecordedGrip& grip, const ContactPlane& plane, const TetMesh& mesh,
-                      const std::vector<double>& times) {
-  const Eigen::Vector3d normal = plane.normal.normalized();
-  const Eigen::Matrix3Xd rest = mesh.nodes(Eigen::all, SelectNodes(grip.region, mesh));
-  Clearance least;
-  for (const double time : times) {
-    const double height =
-        (normal.transpose() * (MotionAt(grip, time) * rest)).minCoeff() - plane.offset;
-    if (height < least.height) least = {height, time};
-  }
-  return least;
-}
-
-// The clamp cannot go where a plane of contact stands, unless it is as deep there in the recording
-// that is changed, whose path or plane may be off by that much. `recorded` are the grips of that
-// recording at its times `recorded_times`, in the same order as the planned `grips`.
-void RequireClampAbovePlanes(const std::vector<RecordedGrip>& grips,
-                             const std::vector<double>& times,
-                             const std::vector<RecordedGrip>& recorded,
-                             const std::vector<double>& recorded_times,
-                             const PredictionStudy& study, const TetMesh& mesh) {
-  for (const auto& effect : study.effects) {
-    const std::optional<ContactPlane> plane = ContactPlaneOf(*effect);
-    if (!plane) continue;
-    for (size_t k = 0; k < grips.size(); ++k) {
-      if (grips[k].motion != GripMotion::kGiven) continue;
-      const Clearance planned = ClearanceOf(grips[k], *plane, mesh, times);
-      const Clearance before = ClearanceOf(recorded[k], *plane, mesh, recorded_times);
-      if (planned.height < std::min(before.height, 0.0) - kTouching)
-        throw InputError(fmt::format(
-            "at {:.3g} s {} would be {:.3g} mm behind the plane of contact of the model",
-            planned.time, grips[k].region.name, -1e3 * planned.height));
-    }
-  }
-}
-
 const PredictedRecording& BaseOf(const Protocol& protocol, const PredictionStudy& study) {
   for (const PredictedRecording& item : study.recordings)
     if (item.name == protocol.recording) return item;
@@ -346,10 +303,9 @@ PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& 
     reaction.values = Eigen::MatrixXd::Zero(reaction.Components(), reaction.times.size());
   }
   const std::vector<double> recorded_times = PlannedTimes(base, 1);
-  RequireClampAbovePlanes(
-      grips, times,
-      AsGrips(base.recording.object, recorded_times.front() - kLeaves, recorded_times.back()),
-      recorded_times, study, mesh);
+  const std::vector<RecordedGrip> recorded_grips =
+      AsGrips(base.recording.object, recorded_times.front() - kLeaves, recorded_times.back());
+  RequireClampAbovePlanes({grips, times}, {recorded_grips, recorded_times}, study.effects, mesh);
 
   item.recording.markers = PlannedMarkers(base, times, fixture);
   if (protocol.more_markers > 0)

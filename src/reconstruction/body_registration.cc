@@ -7,19 +7,13 @@
 #include <limits>
 #include <numbers>
 
+#include "geometry/finite_columns.h"
 #include "geometry/nearest.h"
 #include "geometry/rigid_fit.h"
 #include "reconstruction/recorded_states.h"
 
 namespace lacuna {
 namespace {
-
-std::vector<Eigen::Index> FiniteColumns(const Eigen::Matrix3Xd& points) {
-  std::vector<Eigen::Index> finite;
-  for (Eigen::Index j = 0; j < points.cols(); ++j)
-    if (points.col(j).allFinite()) finite.push_back(j);
-  return finite;
-}
 
 // The largest standard deviation in a direction along the surface, for each root of the trace of a
 // covariance, σ_n² + 2 σ_t²: that of a displacement which is exact along the normal. CPD determines

@@ -14,6 +14,7 @@
 #include "experiment/frame_states.h"
 #include "fit/force_model.h"
 #include "geometry/embedding.h"
+#include "geometry/finite_columns.h"
 #include "geometry/nearest.h"
 #include "geometry/surface_tracks.h"
 #include "reconstruction/known_answers.h"
@@ -34,9 +35,7 @@ size_t FirstFollowed(const ReconstructionStudy& study) {
 std::optional<double> MeanSpacing(const Eigen::Matrix3Xd& first, const Eigen::Matrix3Xd& second) {
   Eigen::Matrix3Xd all(3, first.cols() + second.cols());
   all << first, second;
-  std::vector<Eigen::Index> known;
-  for (Eigen::Index j = 0; j < all.cols(); ++j)
-    if (all.col(j).allFinite()) known.push_back(j);
+  const std::vector<Eigen::Index> known = FiniteColumns(all);
   if (known.size() < 2) return std::nullopt;
   const Eigen::Matrix3Xd points = all(Eigen::all, known);
   return PointSearch(points).Nearest(points, 2).distance.row(1).mean();

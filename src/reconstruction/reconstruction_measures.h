@@ -29,8 +29,7 @@ namespace lacuna {
 //   surface_distance_mean_m        mean over the frames after the reference
 //   held_out_points                number of held-out points that were compared with the model in
 //                                  some frame
-//   held_out_rms_max_m             largest rms error of the held-out points in a frame; absent
-//   where
+//   held_out_rms_max_m             largest rms error of the held-out points in a frame; absent if
 //                                  none was compared
 //   held_out_spacing_m             mean distance of all tracked points to the nearest other one on
 //                                  the undeformed body; absent where none was compared, and where

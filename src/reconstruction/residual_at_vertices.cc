@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "geometry/finite_columns.h"
 #include "geometry/nearest.h"
 #include "reconstruction/recorded_states.h"
 
@@ -14,9 +15,7 @@ ResidualAtVertices::ResidualAtVertices(const ReconstructionStudy& study,
       vertices_(motion.body->boundary.node.size()) {
   if (!are_identified_) return;
   const Eigen::Matrix3Xd places = FindPlacesAtRest(study, states).tracked;
-  std::vector<Eigen::Index> known;
-  for (Eigen::Index j = 0; j < places.cols(); ++j)
-    if (places.col(j).allFinite()) known.push_back(j);
+  const std::vector<Eigen::Index> known = FiniteColumns(places);
   if (known.empty()) return;
   const PointHits near =
       PointSearch(places(Eigen::all, known)).Nearest(motion.body->boundary.surface.vertices);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "geometry/finite_columns.h"
 #include "scan/components.h"
 
 namespace lacuna {
@@ -24,10 +25,7 @@ bool IsUsable(const PointCloud& raw, Eigen::Index row) {
 
 Eigen::Index ForgetRepeatedPoints(bool tracked, Eigen::Matrix3Xd* points) {
   constexpr size_t kPlaceholder = 16;
-  std::vector<Eigen::Index> order;
-  for (Eigen::Index i = 0; i < points->cols(); ++i) {
-    if (points->col(i).allFinite()) order.push_back(i);
-  }
+  std::vector<Eigen::Index> order = FiniteColumns(*points);
   const auto key = [points](Eigen::Index i) {
     const auto point = points->col(i);
     return std::tuple(point.x(), point.y(), point.z());
