@@ -50,8 +50,8 @@ void PrintFiles(const ComparisonRecord& record, const std::string& run) {
   for (size_t r = 0; r < record.recordings.size(); ++r) {
     const ComparedRecording& recording = record.recordings[r];
     if (recording.field_frames == 0) continue;
-    fmt::print("  {0}/body.pvd, {0}/markers.pvd   {1} frames of {2} for ParaView\n", r,
-               recording.field_frames, recording.name);
+    fmt::print("  {0}/body.pvd, {0}/{1}.pvd   {2} frames of {3} for ParaView\n", r,
+               recording.is_scan ? "patches" : "markers", recording.field_frames, recording.name);
   }
 }
 

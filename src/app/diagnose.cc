@@ -5,11 +5,9 @@
 #include <memory>
 
 #include "app/commands.h"
-#include "core/text_layout.h"
 #include "diagnosis/diagnosis_run.h"
 #include "diagnosis/extension_rounds.h"
 #include "prediction/recorded_motion.h"
-#include "report/agreement_text.h"
 #include "report/diagnosis_report.h"
 #include "report/ledger_picture.h"
 #include "report/ledger_report.h"
@@ -73,12 +71,9 @@ int RunDiagnose(const DiagnoseArguments& arguments, const OutputOptions& output)
   const DiagnosisRecord diagnosis = RunDiagnosis(fitted, arguments.run, options, &progress);
   const std::filesystem::path run = arguments.run;
   if (output.json) PrintRecord(run / "diagnosis/diagnosis.json");
-  if (output.PrintsText()) {
+  if (output.PrintsText())
     fmt::print("{}", output.verbose ? DiagnosisReport(diagnosis, fitted.record, run)
                                     : VerdictWithNames(diagnosis) + "\n");
-    const std::string agreement = ExplainAgreement(diagnosis.agreement);
-    if (!output.verbose && !agreement.empty()) fmt::print("{}", Wrapped(agreement, "", ""));
-  }
   WriteFitReport(output, run, &progress);
   return 0;
 }

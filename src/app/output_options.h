@@ -44,8 +44,9 @@ void PrintSentences(const OutputOptions& output, const std::vector<std::string>&
 // none.
 void WriteRunReport(const OutputOptions& output, const std::filesystem::path& run);
 
-// The same for a run of `lacuna fit` and the models that belong to it. Where the folders lack the
-// motion of a usable model, it is predicted first. Prints the headline (report/headline.h), too.
+// WriteRunReport() for a run of `lacuna fit` and the models that belong to it. Where the folders
+// lack the motion of a usable model, it is predicted first. Prints the headline
+// (report/headline.h), too.
 void WriteFitReport(const OutputOptions& output, const std::filesystem::path& run,
                     Progress* progress);
 

@@ -37,14 +37,14 @@ void Redecide(const std::filesystem::path& folder) {
   fmt::print("{} cases decided\n", decided);
 }
 
-int Intervals(const std::filesystem::path& suite, const std::filesystem::path& folder,
-              int workers) {
-  const int status = RunIntervalSuite(ReadIntervalSuite(Config::Load(suite)), folder, workers);
-  if (status != 0) return status;
+bool Intervals(const std::filesystem::path& suite, const std::filesystem::path& folder,
+               int workers) {
+  const bool done = RunIntervalSuite(ReadIntervalSuite(Config::Load(suite)), folder, workers);
+  if (!done) return false;
   const IntervalReport report = ReportIntervals(folder);
   SaveIntervalReport(report, folder);
   fmt::print("{}", IntervalReportInWords(report));
-  return 0;
+  return true;
 }
 
 int Main(int argc, char** argv) {
@@ -82,15 +82,15 @@ int Main(int argc, char** argv) {
   AddDocumentOption(&app);
   if (const std::optional<int> ended = ParseCommandLine(&app, argc, argv)) return *ended;
   return ExitStatusOf("lacuna-trials", [&] {
-    int status = 0;
-    if (make->parsed()) status = MakeTrials(ReadTrialSuite(Config::Load(suite)), folder, workers);
-    if (run->parsed()) status = RunTrials(folder, workers);
-    if (follow->parsed()) status = RunFollowUps(folder, workers);
-    if (intervals->parsed()) status = Intervals(suite, folder, workers);
+    bool done = true;
+    if (make->parsed()) done = MakeTrials(ReadTrialSuite(Config::Load(suite)), folder, workers);
+    if (run->parsed()) done = RunTrials(folder, workers);
+    if (follow->parsed()) done = RunFollowUps(folder, workers);
+    if (intervals->parsed()) done = Intervals(suite, folder, workers);
     ThrowIfInterrupted();  // the cases that were running have stopped, and others were not begun
     if (redecide->parsed()) Redecide(folder);
     if (redecide->parsed() || report->parsed()) Report(folder);
-    return status;
+    return done ? 0 : 1;
   });
 }
 

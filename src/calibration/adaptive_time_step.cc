@@ -45,12 +45,12 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
   // Both are compared with the same scanned points, so that only the predictions differ.
   constexpr double kWhole = std::numeric_limits<double>::infinity();
   CalibrationProblem::FitMemory same;
-  const Prediction now = problem.Predict(values, false, kWhole, &same);
-  const Prediction then = now.usable ? refined.Predict(values, false, kWhole, &same) : now;
+  const ResidualEvaluation now = problem.Predict(values, false, kWhole, &same);
+  const ResidualEvaluation then = now.usable ? refined.Predict(values, false, kWhole, &same) : now;
   StepCheck check;
   check.order = OrderOf(half.scheme);
   if (now.usable && then.usable && now.residual.size() == then.residual.size()) {
-    Prediction change = now;
+    ResidualEvaluation change = now;
     change.residual = then.residual - now.residual;
     check.error = RootMeanSquare(change);
     check.allowed = std::max(kOfNoise, kOfMisfit * RootMeanSquare(now));

@@ -68,7 +68,7 @@ double BeginningOfMotion(const RecordingModel& model, const std::vector<int>& fr
 
 // The rms of the whitened residual; infinite where the prediction is not usable.
 double RmsAt(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
-  const Prediction prediction = problem.Predict(values, /*with_jacobian=*/false);
+  const ResidualEvaluation prediction = problem.Predict(values, /*with_jacobian=*/false);
   return prediction.usable ? RootMeanSquare(prediction) : kUnlimited;
 }
 
@@ -176,7 +176,7 @@ class Fitter {
     return Calibrate(
         parameters,
         [&](const Eigen::VectorXd& at, bool with_jacobian) {
-          Prediction prediction = problem_.Predict(at, with_jacobian, horizon, &memory_);
+          ResidualEvaluation prediction = problem_.Predict(at, with_jacobian, horizon, &memory_);
           progress_.Report(++evaluations_,
                            prediction.usable ? RootMeanSquare(prediction) : std::nan(""));
           return prediction;

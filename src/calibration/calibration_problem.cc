@@ -69,7 +69,8 @@ void AppendRows(const Eigen::MatrixXd& more, Eigen::MatrixXd* all) {
 // Appends whitened rows to a prediction. `series`: rows of one frame. `count`: for each point (or
 // each component of a reaction) in each frame, 0 where it was not observed.
 void AppendWhitened(const Eigen::MatrixXd& residual, const Eigen::MatrixXd& jacobian,
-                    Eigen::Index series, const std::vector<double>& count, Prediction* prediction) {
+                    Eigen::Index series, const std::vector<double>& count,
+                    ResidualEvaluation* prediction) {
   const Eigen::Index first = prediction->residual.size();
   if (!count.empty())
     prediction->unobserved += residual.rows() / static_cast<Eigen::Index>(count.size()) *
@@ -241,10 +242,11 @@ std::vector<size_t> CalibrationProblem::FittedRecordings() const {
   return fitted;
 }
 
-Prediction CalibrationProblem::PredictRecording(size_t recording, const Eigen::VectorXd& values,
-                                                bool with_jacobian, double horizon,
-                                                const PredictionHints& hints,
-                                                Misfit* misfit) const {
+ResidualEvaluation CalibrationProblem::PredictRecording(size_t recording,
+                                                        const Eigen::VectorXd& values,
+                                                        bool with_jacobian, double horizon,
+                                                        const PredictionHints& hints,
+                                                        Misfit* misfit) const {
   const RecordingModel model = ModelAt(recording, values);
   std::vector<int> frames = model.recording().FittedFrames();
   const std::vector<double>& times = model.recording().recording.times;
@@ -253,7 +255,7 @@ Prediction CalibrationProblem::PredictRecording(size_t recording, const Eigen::V
   std::vector<MisfitDirection> directions;
   if (with_jacobian) directions = DirectionsFor(model, {});
   *misfit = model.Predict(frames, NuisanceOf(recording, values), directions, hints);
-  Prediction part;
+  ResidualEvaluation part;
   if (!misfit->summary.IsUsable())
     part.message = misfit->summary.message;
   else if (hints.reach_factor <= 1)
@@ -283,8 +285,8 @@ Prediction CalibrationProblem::PredictRecording(size_t recording, const Eigen::V
   return part;
 }
 
-Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
-                                       double horizon, FitMemory* memory) const {
+ResidualEvaluation CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
+                                               double horizon, FitMemory* memory) const {
   ThrowIfInterrupted();
   FitMemory nothing;
   FitMemory& known = memory != nullptr ? *memory : nothing;
@@ -293,7 +295,7 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
   known.equilibria.resize(models_.size());
   const std::vector<Eigen::VectorXd> equilibria_before = known.equilibria;
   const std::vector<size_t> fitted = FittedRecordings();
-  std::vector<Prediction> parts(fitted.size());
+  std::vector<ResidualEvaluation> parts(fitted.size());
   ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t k) {
     const size_t r = fitted[static_cast<size_t>(k)];
     Misfit misfit;
@@ -304,9 +306,9 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
     if (misfit.summary.held.size() > 0) known.equilibria[r] = misfit.summary.held;
     if (seek) known.correspondences[r] = std::move(misfit.observed);
   });
-  Prediction all;
+  ResidualEvaluation all;
   Eigen::Index rows = 0;
-  for (const Prediction& part : parts) {
+  for (const ResidualEvaluation& part : parts) {
     if (!part.usable) {
       // The result of the next prediction must not depend on one that has failed.
       known.equilibria = equilibria_before;
@@ -319,7 +321,7 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
   all.residual.resize(rows);
   if (with_jacobian) all.jacobian.resize(rows, static_cast<Eigen::Index>(parameters_.size()));
   Eigen::Index row = 0;
-  for (const Prediction& part : parts) {
+  for (const ResidualEvaluation& part : parts) {
     all.residual.segment(row, part.residual.size()) = part.residual;
     if (with_jacobian) all.jacobian.middleRows(row, part.residual.size()) = part.jacobian;
     for (const Eigen::Index before : part.before)

@@ -36,7 +36,7 @@ struct LinearisedMisfit {
     std::vector<char> fitted;  // for each frame: 1 where it was fitted, 0 where held out
     Eigen::VectorXd speed;     // d(predicted)/dt, one entry per row, m/s or N/s
     double sign = 1;           // ReactionMisfit::sign
-    // Of points only. For each frame: what the prediction was compared with.
+    // What the prediction was compared with, one entry per frame; empty for a reaction.
     std::vector<Observed> observed;
     Eigen::VectorXd held;  // 3n, m: the equilibrium before the motion
 
@@ -102,7 +102,7 @@ class CalibrationProblem {
   // The study with the noise and the patches that this problem has estimated or chosen, for another
   // problem whose residual is to be compared with this one's.
   PredictionStudy WithEstimatedNoise() const;
-  // The same with its effects at these values of the problem's parameters.
+  // The study with its effects at these values of the problem's parameters.
   PredictionStudy StudyAt(const Eigen::VectorXd& values) const;
   // The model of a recording at these values of the problem's parameters.
   RecordingModel ModelAt(size_t recording, const Eigen::VectorXd& values) const;
@@ -137,9 +137,9 @@ class CalibrationProblem {
   // where the simulation stops early or most points of a scan have no correspondence. The result
   // depends on the arguments alone, so that several threads may predict at once. Throws
   // Interrupted.
-  Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian,
-                     double horizon = std::numeric_limits<double>::infinity(),
-                     FitMemory* memory = nullptr) const;
+  ResidualEvaluation Predict(const Eigen::VectorXd& values, bool with_jacobian,
+                             double horizon = std::numeric_limits<double>::infinity(),
+                             FitMemory* memory = nullptr) const;
 
   // How far the fitted frames of scans are from the surface that is predicted at `values`.
   struct ScanDistance {
@@ -170,8 +170,9 @@ class CalibrationProblem {
   std::vector<size_t> FittedRecordings() const;
   // The results of Predict() and Linearise() for one recording; recordings are predicted side by
   // side. `misfit` receives the misfit that the prediction was made from.
-  Prediction PredictRecording(size_t recording, const Eigen::VectorXd& values, bool with_jacobian,
-                              double horizon, const PredictionHints& hints, Misfit* misfit) const;
+  ResidualEvaluation PredictRecording(size_t recording, const Eigen::VectorXd& values,
+                                      bool with_jacobian, double horizon,
+                                      const PredictionHints& hints, Misfit* misfit) const;
   struct LinearisedRecording {
     std::string message;  // the reason why it is not usable; empty where it is
     std::vector<LinearisedMisfit::Part> parts;  // first_row counts from that of the recording

@@ -24,7 +24,7 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage, or its files.
-constexpr int kCalibrationVersion = 32;
+constexpr int kCalibrationVersion = 33;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
@@ -137,8 +137,8 @@ void CountKnownErrors(const CalibrationProblem& problem, const KnownErrors& erro
     FittedParameter& parameter = record->parameters[k];
     if (errors.at_mesh_limit.size() > 0) parameter.with_finest_mesh = errors.at_mesh_limit[at];
     parameter.at_limit = errors.at_limit[at];
-    CountModelErrors(problem.parameters()[k], *parameter.at_limit, errors.deviation[at],
-                     &parameter.estimate);
+    WidenIntervalByModelErrors(problem.parameters()[k], *parameter.at_limit, errors.deviation[at],
+                               &parameter.estimate);
   }
   record->notes.insert(record->notes.end(), errors.notes.begin(), errors.notes.end());
 }

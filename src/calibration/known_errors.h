@@ -21,7 +21,8 @@
 
 namespace lacuna {
 
-// In the order of CalibrationProblem::parameters().
+// What is known about the errors of fitted values; vectors are in the order of
+// CalibrationProblem::parameters().
 struct KnownErrors {
   // The values that would have been fitted with infinitely fine elements; empty where no other mesh
   // can be made or simulated (calibration/mesh_limit.h).

@@ -1,4 +1,4 @@
-// The same body with elements of another size.
+// Another mesh of the body of a study, with elements of another size.
 #ifndef LACUNA_CALIBRATION_OTHER_ELEMENTS_H_
 #define LACUNA_CALIBRATION_OTHER_ELEMENTS_H_
 

@@ -26,11 +26,15 @@ namespace {
 // A replayed residual may deviate from the recorded one by at most this many σ. Rounding in another
 // order of summation causes far smaller deviations, another model causes larger ones.
 constexpr double kSameMotion = 0.1;
-constexpr double kAnyPlace = 1;  // m, so wide a prior leaves the places of the markers undetermined
+constexpr double kAnyPlace = 1;  // m, so wide a prior leaves the places of the points undetermined
+// At most this share of the patches may deviate by more: rounding can move single scanned points
+// into a neighbouring patch. Larger: small changes of the model remain unnoticed.
+constexpr double kOtherMatches = 0.01;
 
 // Whether the motion is the one that was fitted. It then differs from the recorded residuals only
 // by errors of the markers' places, which move with the object and which the fit has subtracted.
-bool MatchesFit(const RecordedResiduals& residuals, const ReplayedMotion& motion, double noise) {
+bool MatchesFittedMarkers(const RecordedResiduals& residuals, const ReplayedMotion& motion,
+                          double noise) {
   if (motion.predicted.cols() != residuals.measured.cols() ||
       motion.predicted.rows() != residuals.measured.rows())
     return false;
@@ -49,6 +53,42 @@ bool MatchesFit(const RecordedResiduals& residuals, const ReplayedMotion& motion
     if (seen[k] && other.cwiseAbs().maxCoeff() > kSameMotion * noise) return false;
   }
   return true;
+}
+
+// The same for scans. The fit has subtracted an error of each patch that is the same in all frames.
+bool MatchesFittedPatches(const RecordedResiduals& residuals, const ReplayedMotion& motion) {
+  const Eigen::MatrixXd& recorded = residuals.along_normal;
+  const Misfit& misfit = motion.misfit;
+  if (misfit.points != recorded.rows() || std::ssize(misfit.frames) != recorded.cols())
+    return false;
+  std::vector<double> seen;  // in both
+  Eigen::Index in_any = 0, other = 0;
+  Eigen::VectorXd shown = Eigen::VectorXd::Zero(recorded.size());
+  for (Eigen::Index k = 0; k < recorded.size(); ++k) {
+    const bool in_fit = !std::isnan(recorded.reshaped()[k]);
+    const bool now = misfit.count[static_cast<size_t>(k)] > 0;
+    seen.push_back(in_fit && now);
+    in_any += in_fit || now;
+    other += in_fit != now;
+    if (in_fit && now) shown[k] = misfit.residual[k] - recorded.reshaped()[k];
+  }
+  const double noise = Rms(residuals.sigma);
+  if (std::isnan(noise)) return other == 0;
+  const Eigen::MatrixXd offsets =
+      CommonError(shown, seen, misfit.points, {noise, kAnyPlace},
+                  std::vector<char>(static_cast<size_t>(recorded.cols()), 1));
+  for (Eigen::Index k = 0; k < recorded.size(); ++k) {
+    const double difference = std::abs(shown[k] - offsets(0, k % misfit.points));
+    other += seen[static_cast<size_t>(k)] != 0 &&
+             difference > kSameMotion * residuals.sigma.reshaped()[k];
+  }
+  return static_cast<double>(other) <= kOtherMatches * static_cast<double>(in_any);
+}
+
+bool MatchesFit(const RecordedResiduals& residuals, const ReplayedMotion& motion, double noise,
+                bool is_scan) {
+  return is_scan ? MatchesFittedPatches(residuals, motion)
+                 : MatchesFittedMarkers(residuals, motion, noise);
 }
 
 // `over_noise`: LengthsOverNoise() of the whole recording.
@@ -139,10 +179,6 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
     ComparedRecording& recording = comparison->record.recordings[r];
     const RecordedResiduals& residuals = comparison->residuals[r];
     const RecordingModel model = problem.ModelAt(r, fitted.values);
-    if (model.recording().ShowsScans()) {
-      note_omission("this is not implemented for scans, such as those of " + recording.name);
-      continue;
-    }
     const Eigen::VectorXd nuisance = problem.NuisanceOf(r, fitted.values);
     const ReplayedMotion motion = Replay(model, nuisance);
     if (!motion.summary.IsUsable()) {
@@ -150,7 +186,7 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
                     " stops before its end: " + motion.summary.message);
       continue;
     }
-    if (!MatchesFit(residuals, motion, comparison->record.noise)) {
+    if (!MatchesFit(residuals, motion, comparison->record.noise, recording.is_scan)) {
       note_omission("the model no longer predicts " + recording.name + " as it did in the fit");
       continue;
     }

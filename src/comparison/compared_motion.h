@@ -13,11 +13,11 @@
 
 namespace lacuna {
 
-// Adds the trends of the error with strain, strain rate and height, and the unexplained force, and
-// writes fields for ParaView to <run>/comparison/<number of the recording> and the motion with the
-// force for a report (MotionFile). Where the experiment or a recording has changed since the fit,
-// or a recording consists of scans, a note is added instead. Throws InputError when files cannot be
-// written, and Interrupted.
+// Adds the trends of the error with strain, strain rate and height, the places that are loaded most
+// and the unexplained force, and writes fields for ParaView to <run>/comparison/<number of the
+// recording> and the motion with the force for a report (MotionFile). Where the experiment or a
+// recording has changed since the fit, or the prediction is no longer that of the fit, a note is
+// added instead. Throws InputError when files cannot be written, and Interrupted.
 void CompareMotion(const std::filesystem::path& run, Progress* progress, Comparison* comparison);
 
 // What follows for stresses and forces where the recordings do not determine a fitted modulus, as

@@ -51,26 +51,30 @@ void WriteBody(const Model& model, const TrajectoryState& state,
   WriteVtu(file, deformed, fields);
 }
 
-void WriteMarkers(const RecordedResiduals& residuals, int frame, const Eigen::MatrixXd& over_noise,
-                  const std::filesystem::path& file) {
+// The observed points of a frame: markers, or patches of a scanned surface.
+void WritePoints(const RecordedResiduals& residuals, bool are_patches, int frame,
+                 const Eigen::MatrixXd& over_noise, const std::filesystem::path& file) {
   std::vector<int> seen;
   for (int m = 0; m < residuals.PointCount(); ++m)
     if (residuals.difference.col(frame).segment<3>(3 * m).allFinite()) seen.push_back(m);
   const Eigen::Index count = static_cast<Eigen::Index>(seen.size());
   PointCloud cloud;
   cloud.points.resize(3, count);
-  Eigen::MatrixXd difference(3, count), marker(1, count);
+  Eigen::MatrixXd difference(3, count), number(1, count);
   for (Eigen::Index k = 0; k < count; ++k) {
     cloud.points.col(k) = residuals.measured.col(frame).segment<3>(3 * seen[k]);
     difference.col(k) = residuals.difference.col(frame).segment<3>(3 * seen[k]);
-    marker(0, k) = seen[k];
+    number(0, k) = seen[k];
   }
-  WriteVtp(file, cloud,
-           {{"predicted_m", cloud.points + difference},
-            {"difference_m", difference},
-            {"difference_over_sigma", over_noise.col(frame)(seen).transpose()},
-            {"fitted", Eigen::MatrixXd::Constant(1, count, residuals.fitted[frame] != 0)},
-            {"marker", marker}});
+  std::vector<Field> fields{
+      {"predicted_m", cloud.points + difference},
+      {"difference_m", difference},
+      {"difference_over_sigma", over_noise.col(frame)(seen).transpose()},
+      {"fitted", Eigen::MatrixXd::Constant(1, count, residuals.fitted[frame] != 0)},
+      {are_patches ? "patch" : "marker", number}};
+  if (are_patches)
+    fields.push_back({"along_normal_m", residuals.along_normal.col(frame)(seen).transpose()});
+  WriteVtp(file, cloud, fields);
 }
 
 }  // namespace
@@ -87,7 +91,9 @@ int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& 
   const int first = motion.state_frame.front() < 0 ? 1 : 0;
   const int states = static_cast<int>(motion.states.size()) - first;
   const int count = std::min(states, kMostFieldFrames);
-  std::vector<TimedFile> bodies, markers;
+  const bool are_patches = model.recording().ShowsScans();
+  const char* kind = are_patches ? "patches" : "markers";
+  std::vector<TimedFile> bodies, points;
   for (int i = 0; i < count; ++i) {
     const int k = first + (count > 1 ? i * (states - 1) / (count - 1) : 0);
     const int frame = motion.state_frame[k];
@@ -95,11 +101,11 @@ int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& 
     WriteBody(model.model(), motion.states[k], motion.registration,
               force.record.usable ? &force : nullptr, time, file("body", frame, "vtu"));
     bodies.push_back({time, file("body", frame, "vtu")});
-    WriteMarkers(residuals, frame, over_noise, file("markers", frame, "vtp"));
-    markers.push_back({time, file("markers", frame, "vtp")});
+    WritePoints(residuals, are_patches, frame, over_noise, file(kind, frame, "vtp"));
+    points.push_back({time, file(kind, frame, "vtp")});
   }
   WritePvd(folder / "body.pvd", bodies);
-  WritePvd(folder / "markers.pvd", markers);
+  WritePvd(folder / fmt::format("{}.pvd", kind), points);
   return static_cast<int>(bodies.size());
 }
 

@@ -21,8 +21,12 @@ inline constexpr int kMostFieldFrames = 60;
 //                strain, the largest principal Green–Lagrange strain, in the tetrahedra;
 //   markers.pvd  the measured markers: predicted_m, difference_m,
 //                difference_over_sigma (`over_noise`, m × n: LengthsOverNoise()), fitted, marker.
-//                Markers that were not observed are left out.
-// Both are in the recording's coordinate system. Returns the number of frames. Throws InputError
+//                Markers that were not observed are left out;
+//   patches.pvd  for scans, in place of markers.pvd: each observed patch at the mean of its scanned
+//                points, with predicted_m, difference_m and difference_over_sigma along its normal,
+//                fitted, patch, and along_normal_m, the difference with its sign: positive where
+//                the prediction lies outside of the scan.
+// All are in the recording's coordinate system. Returns the number of frames. Throws InputError
 // when a file cannot be written.
 int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& residuals,
                           const ReplayedMotion& motion, const UnexplainedForce& force,

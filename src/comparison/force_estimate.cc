@@ -1,5 +1,7 @@
 #include "comparison/force_estimate.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -24,6 +26,10 @@ constexpr double kAgreement = 0.1;
 constexpr double kAgreementOverSigma = 0.5;
 constexpr double kShortestStep = 0.2;  // a step that does not reduce the error is halved down to it
 constexpr int kMostPredictions = 8;
+// A step is refused after which fewer than this share of the patches of a scan are still observed,
+// because an error that is no longer observed is not a smaller error. Which markers are observed
+// does not depend on the motion.
+constexpr double kFewestObserved = 0.9;
 // A search that has not converged is used only if the remaining error is less than this fraction of
 // the error without the force.
 constexpr double kWorthwhile = 0.5;
@@ -90,8 +96,10 @@ bool TakeStep(const RecordingModel& recording, const ForceLinearisation& lineari
         Replay(recording, state->motion.nuisance + share * (step.nuisance - state->motion.nuisance),
                field->Effects());
     ++fit->predictions;
-    if (!trial.summary.IsUsable()) continue;
-    const double reached = at.Rms(linearisation.WhitenedResidual(trial));
+    if (!trial.summary.IsUsable() ||
+        linearisation.Coordinates(trial) < kFewestObserved * at.coordinates)
+      continue;
+    const double reached = linearisation.Rms(trial);
     fit->converged =
         share == 1 && std::abs(reached - step.expected_rms) <
                           std::max(kAgreement * step.expected_rms, kAgreementOverSigma);
@@ -138,6 +146,8 @@ UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
   SmoothForce& field = force.field;
   field = *zero;
   const ForceLinearisation linearisation(recording, motion, field, errors);
+  if (linearisation.Coordinates(motion) == 0)
+    return Unusable(force, "none of its points was observed");
   SearchState state{motion, Eigen::VectorXd::Zero(field.amplitudes.size()), {}};
   ForceFitSummary& fit = force.record.fit;
   fit.knots = field.KnotCount();
@@ -149,7 +159,9 @@ UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
   if (!state.estimate || (!fit.converged && !helps)) {
     return Unusable(
         force, fit.rms_over_sigma_without > kFarFromTruth
-                   ? "the model is so far from the markers that no small force reduces the error"
+                   ? fmt::format("the model is so far from the {} that no small force reduces the "
+                                 "error",
+                                 recording.recording().ShowsScans() ? "scans" : "markers")
                    : "no small, smooth force reduces the error enough");
   }
   field.amplitudes.reshaped() = state.amplitudes;

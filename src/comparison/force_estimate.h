@@ -1,14 +1,15 @@
-// Estimates the smooth body force that would have made a fitted model follow the markers: evidence
-// on which physics the model lacks.
+// Estimates the smooth body force that would have made a fitted model follow the markers or the
+// scans of a recording: evidence on which physics the model lacks.
 //
 // The amplitudes a of a smooth force (smooth_force.h) and the recording's nuisance parameters n
 // (holding force, clock, registration) minimise
 //   ½ |r(a, n)|²/v + ½ aᵀ (s² L Lᵀ)⁻¹ a + ½ nᵀ P⁻¹ n,
 // where r is the residual, whitened as in the fit, and the fitted parameters of the model stay
 // fixed. They are found by Gauss–Newton steps: the Jacobian is computed along the motion without
-// the force, then along the motion with it (force_linearisation.h). The width s and the shape L of
-// the prior (how uniform the force is over the object and how slowly it changes) and the variance v
-// are chosen by their marginal likelihood (analysis/amplitude_estimate.h).
+// the force, then along the motion with it (force_linearisation.h); along each motion, scanned
+// points find their correspondences anew. The width s and the shape L of the prior (how uniform the
+// force is over the object and how slowly it changes) and the variance v are chosen by their
+// marginal likelihood (analysis/amplitude_estimate.h).
 #ifndef LACUNA_COMPARISON_FORCE_ESTIMATE_H_
 #define LACUNA_COMPARISON_FORCE_ESTIMATE_H_
 

@@ -10,10 +10,17 @@ namespace {
 // recordings, more memory.
 constexpr double kMostEntries = 25e6;
 
-int FrameStride(int frames, int markers, int knots) {
-  const int most = std::max(
-      2 * knots, static_cast<int>(kMostEntries / (3.0 * markers * SmoothForce::kShapes * knots)));
+int FrameStride(int frames, Eigen::Index rows_of_frame, int knots) {
+  const int most =
+      std::max(2 * knots, static_cast<int>(kMostEntries / (static_cast<double>(rows_of_frame) *
+                                                           SmoothForce::kShapes * knots)));
   return (frames + most - 1) / most;
+}
+
+// Vectors of the nodes, stacked in the columns, in turned coordinates.
+Eigen::MatrixXd TurnedColumns(const Eigen::Matrix3d& turn, const Eigen::MatrixXd& stacked) {
+  const Eigen::Matrix3Xd turned = turn * stacked.reshaped(3, stacked.size() / 3);
+  return turned.reshaped(stacked.rows(), stacked.cols());
 }
 
 }  // namespace
@@ -25,7 +32,11 @@ double LinearisedForce::Rms(const Eigen::VectorXd& rows) const {
 ForceLinearisation::ForceLinearisation(const RecordingModel& recording,
                                        const ReplayedMotion& motion, const SmoothForce& field,
                                        const MeasurementErrors& errors)
-    : recording_(recording), field_(field), errors_(errors), shapes_(field.Shapes()) {
+    : recording_(recording),
+      field_(field),
+      errors_(errors),
+      components_(recording.observer().Components()),
+      shapes_(field.Shapes()) {
   prior_deviations_.resize(static_cast<Eigen::Index>(recording.nuisances().size()));
   for (const auto& nuisance : recording.nuisances()) {
     prior_deviations_[static_cast<Eigen::Index>(held_shape_.size())] =
@@ -36,42 +47,55 @@ ForceLinearisation::ForceLinearisation(const RecordingModel& recording,
     shapes_.conservativeResize(Eigen::NoChange, shapes_.cols() + 1);
     shapes_.rightCols(1) = nuisance.direction.perturbation.held_force;
   }
-  const int markers = recording.PointCount();
+  const int points = recording.PointCount();
   const int frames = static_cast<int>(recording.recording().frames.size());
-  const int stride = FrameStride(frames, markers, field.KnotCount());
+  const int stride = FrameStride(frames, RowsOfFrame(), field.KnotCount());
   for (int frame = 0; frame < frames; frame += stride) {
     frames_.push_back(frame);
-    const auto at_markers = motion.deformation.begin() + frame * markers;
-    deformation_.insert(deformation_.end(), at_markers, at_markers + markers);
+    if (motion.deformation.empty()) continue;
+    const auto at_markers = motion.deformation.begin() + frame * points;
+    deformation_.insert(deformation_.end(), at_markers, at_markers + points);
   }
-}
-
-Eigen::Index ForceLinearisation::Rows() const {
-  return 3 * recording_.PointCount() * static_cast<Eigen::Index>(frames_.size());
 }
 
 const Eigen::Matrix3Xd& ForceLinearisation::Measured(int frame) const {
   return recording_.recording().recording.markers.positions[recording_.recording().frames[frame]];
 }
 
-template <typename Visit>
-void ForceLinearisation::ForEachObserved(const Visit& visit) const {
-  Eigen::Index row = 0;
-  for (const int frame : frames_)
-    for (int m = 0; m < recording_.PointCount(); ++m, row += 3)
-      if (Measured(frame).col(m).allFinite()) visit(frame, m, row);
+bool ForceLinearisation::IsObserved(const ReplayedMotion& motion, int frame, int point) const {
+  if (recording_.recording().ShowsScans())
+    return motion.misfit.count[static_cast<size_t>(frame * recording_.PointCount() + point)] > 0;
+  return Measured(frame).col(point).allFinite();
 }
 
-Eigen::MatrixXd ForceLinearisation::Whiten(const Eigen::MatrixXd& rows) const {
+template <typename Visit>
+void ForceLinearisation::ForEachObserved(const ReplayedMotion& motion, const Visit& visit) const {
+  Eigen::Index row = 0;
+  for (const int frame : frames_)
+    for (int m = 0; m < recording_.PointCount(); ++m, row += components_)
+      if (IsObserved(motion, frame, m)) visit(frame, m, row);
+}
+
+int ForceLinearisation::Coordinates(const ReplayedMotion& motion) const {
+  int coordinates = 0;
+  ForEachObserved(motion, [&](int, int, Eigen::Index) { coordinates += components_; });
+  return coordinates;
+}
+
+Eigen::MatrixXd ForceLinearisation::Whiten(const Eigen::MatrixXd& rows,
+                                           const ReplayedMotion& motion) const {
   const PredictedRecording& item = recording_.recording();
   const std::vector<Eigen::VectorXd>& weights = item.recording.markers.weights;
-  std::vector<double> observed;
+  const auto count_of = [&](int frame, int point) {
+    if (item.ShowsScans())
+      return motion.misfit.count[static_cast<size_t>(frame * recording_.PointCount() + point)];
+    return weights.empty() ? 1 : weights[item.frames[frame]][point];
+  };
+  std::vector<double> counts;
   for (const int frame : frames_)
-    for (int m = 0; m < recording_.PointCount(); ++m) {
-      const double weight = weights.empty() ? 1 : weights[item.frames[frame]][m];
-      observed.push_back(Measured(frame).col(m).allFinite() ? weight : 0);
-    }
-  return Whitened(rows, observed, recording_.PointCount(), errors_, deformation_);
+    for (int m = 0; m < recording_.PointCount(); ++m)
+      counts.push_back(IsObserved(motion, frame, m) ? count_of(frame, m) : 0);
+  return Whitened(rows, counts, recording_.PointCount(), errors_, deformation_);
 }
 
 ReducedResponse ForceLinearisation::Response(const ReplayedMotion& motion) const {
@@ -82,15 +106,23 @@ ReducedResponse ForceLinearisation::Response(const ReplayedMotion& motion) const
 
 Eigen::VectorXd ForceLinearisation::WhitenedResidual(const ReplayedMotion& motion) const {
   Eigen::VectorXd residual = Eigen::VectorXd::Zero(Rows());
-  ForEachObserved([&](int frame, int m, Eigen::Index row) {
-    residual.segment<3>(row) =
-        motion.predicted.col(frame).segment<3>(3 * m) - Measured(frame).col(m);
+  ForEachObserved(motion, [&](int frame, int m, Eigen::Index row) {
+    if (recording_.recording().ShowsScans())
+      residual[row] = motion.misfit.residual[RowsOfFrame() * frame + m];
+    else
+      residual.segment<3>(row) =
+          motion.predicted.col(frame).segment<3>(3 * m) - Measured(frame).col(m);
   });
-  return Whiten(residual);
+  return Whiten(residual, motion);
 }
 
-std::vector<Eigen::MatrixXd> ForceLinearisation::MarkerResponses(
-    const ReducedResponse& response, const std::vector<double>& times) const {
+double ForceLinearisation::Rms(const ReplayedMotion& motion) const {
+  return std::sqrt(WhitenedResidual(motion).squaredNorm() / Coordinates(motion));
+}
+
+std::vector<Eigen::MatrixXd> ForceLinearisation::PointResponses(
+    const ReplayedMotion& motion, const ReducedResponse& response,
+    const std::vector<double>& times) const {
   const Eigen::Index forces = field_.amplitudes.size(), nuisances = prior_deviations_.size();
   const ForceHistories hat_functions = [&](double time) {
     Eigen::MatrixXd amplitude = Eigen::MatrixXd::Zero(shapes_.cols(), forces + nuisances);
@@ -100,11 +132,23 @@ std::vector<Eigen::MatrixXd> ForceLinearisation::MarkerResponses(
   Eigen::MatrixXd held = hat_functions(field_.start);
   for (Eigen::Index k = 0; k < nuisances; ++k)
     if (held_shape_[k] >= 0) held(held_shape_[k], forces + k) = 1;
+  // The rows of markers are the same in all frames, those of patches follow the surface.
+  const bool shows_scans = recording_.recording().ShowsScans();
+  Eigen::MatrixXd at_markers, turned_basis;
+  if (shows_scans)
+    turned_basis = TurnedColumns(motion.registration.linear(), response.basis());
+  else
+    at_markers = recording_.Markers()->rows() * response.basis();
   std::vector<Eigen::MatrixXd> responses;
-  const Eigen::MatrixXd at_markers = recording_.Markers()->rows() * response.basis();
   response.Respond(held, hat_functions, times,
-                   [&](int, const Eigen::MatrixXd& position, const Eigen::MatrixXd&) {
-                     responses.emplace_back(at_markers * position);
+                   [&](int index, const Eigen::MatrixXd& position, const Eigen::MatrixXd&) {
+                     if (!shows_scans) {
+                       responses.emplace_back(at_markers * position);
+                       return;
+                     }
+                     const Observed& seen =
+                         motion.misfit.observed[static_cast<size_t>(frames_[index])];
+                     responses.emplace_back((*seen.rows * turned_basis) * position);
                    });
   return responses;
 }
@@ -116,7 +160,7 @@ LinearisedForce ForceLinearisation::Linearise(const ReplayedMotion& motion,
   for (const int frame : frames_)
     times.push_back(recording_.recording().recording.times[recording_.recording().frames[frame]] -
                     motion.delay);
-  const std::vector<Eigen::MatrixXd> responses = MarkerResponses(response, times);
+  const std::vector<Eigen::MatrixXd> responses = PointResponses(motion, response, times);
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(Rows(), forces + nuisances);
   LinearisedForce result;
   for (Eigen::Index k = 0; k < nuisances; ++k) {
@@ -125,9 +169,15 @@ LinearisedForce ForceLinearisation::Linearise(const ReplayedMotion& motion,
         held_shape_[static_cast<size_t>(k)] < 0 &&
         (direction.IsSimulated() || direction.kind == MisfitDirection::Kind::kCellDelay));
   }
-  ForEachObserved([&](int frame, int m, Eigen::Index row) {
-    const Eigen::Index index = row / (3 * recording_.PointCount());
-    result.coordinates += 3;
+  result.coordinates = Coordinates(motion);
+  ForEachObserved(motion, [&](int frame, int m, Eigen::Index row) {
+    const Eigen::Index index = row / RowsOfFrame();
+    if (recording_.recording().ShowsScans()) {
+      jacobian.row(row) = responses[index].row(m);
+      // 0 for the holding forces and for the nuisances that are kept.
+      jacobian.row(row).tail(nuisances) += motion.misfit.jacobian.row(RowsOfFrame() * frame + m);
+      return;
+    }
     jacobian.middleRows<3>(row) =
         motion.registration.linear() * responses[index].middleRows<3>(3 * m);
     for (Eigen::Index k = 0; k < nuisances; ++k) {
@@ -142,7 +192,7 @@ LinearisedForce ForceLinearisation::Linearise(const ReplayedMotion& motion,
         column = -motion.velocity.col(frame).segment<3>(3 * m);
     }
   });
-  jacobian = Whiten(jacobian);
+  jacobian = Whiten(jacobian, motion);
   result.residual = WhitenedResidual(motion);
   result.force_jacobian = jacobian.leftCols(forces);
   result.nuisance_jacobian = jacobian.rightCols(nuisances);

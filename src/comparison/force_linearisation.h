@@ -1,5 +1,5 @@
-// The residual of one recording of markers, and its derivatives with respect to a smooth force and
-// to the recording's nuisance parameters.
+// The residual of one recording, of markers or of scans, and its derivatives with respect to a
+// smooth force and to the recording's nuisance parameters.
 #ifndef LACUNA_COMPARISON_FORCE_LINEARISATION_H_
 #define LACUNA_COMPARISON_FORCE_LINEARISATION_H_
 
@@ -14,15 +14,17 @@
 
 namespace lacuna {
 
-// Whitened residual, predicted minus measured, and its Jacobians. Rows are x, y, z of each marker
-// of each frame that is used, frames outermost; rows of a marker that was not observed are 0.
+// Whitened residual, predicted minus measured, and its Jacobians. Rows are x, y, z of each marker,
+// or the distance of each patch along its normal, of each frame that is used, frames outermost;
+// rows of a point that was not observed are 0. Scanned points keep their correspondences in the
+// Jacobians, as in the fit (experiment/surface_observer.h).
 struct LinearisedForce {
-  int coordinates = 0;  // number of coordinates that were observed
+  int coordinates = 0;  // number of rows that were observed
   Eigen::VectorXd residual;
   Eigen::MatrixXd force_jacobian;     // columns: SmoothForce::amplitudes column by column
   Eigen::MatrixXd nuisance_jacobian;  // columns: RecordingModel::nuisances()
   // For each nuisance, whether it keeps its value: its column is left out (0). The delay of a load
-  // cell does not change the markers. The placement of a grip stays as fitted, since moving a grip
+  // cell does not change the points. The placement of a grip stays as fitted, since moving a grip
   // changes the motion as forces do.
   std::vector<char> is_kept;
   double Rms(const Eigen::VectorXd& rows) const;
@@ -33,8 +35,9 @@ struct LinearisedForce {
 // used.
 class ForceLinearisation {
  public:
-  // The recording's model and the field must outlive this. `errors` whitens the residual; errors of
-  // the markers' places follow the deformation of `motion`, which must reach the last frame.
+  // The recording's model and the field must outlive this. `errors` whitens the residual as in the
+  // fit; errors of the markers' places follow the deformation of `motion`, which must reach the
+  // last frame.
   ForceLinearisation(const RecordingModel& recording, const ReplayedMotion& motion,
                      const SmoothForce& field, const MeasurementErrors& errors);
 
@@ -43,28 +46,38 @@ class ForceLinearisation {
 
   // The response of a motion to small forces; may be unusable (ReducedResponse::IsUsable).
   ReducedResponse Response(const ReplayedMotion& motion) const;
-  Eigen::VectorXd WhitenedResidual(const ReplayedMotion& motion) const;
+  // The number of rows that were observed along a motion. That of markers is the same for all
+  // motions.
+  int Coordinates(const ReplayedMotion& motion) const;
+  // The rms over these rows of the whitened residual.
+  double Rms(const ReplayedMotion& motion) const;
   LinearisedForce Linearise(const ReplayedMotion& motion, const ReducedResponse& response) const;
 
  private:
-  Eigen::Index Rows() const;
+  Eigen::Index RowsOfFrame() const { return components_ * recording_.PointCount(); }
+  Eigen::Index Rows() const { return RowsOfFrame() * static_cast<Eigen::Index>(frames_.size()); }
   const Eigen::Matrix3Xd& Measured(int frame) const;
-  Eigen::MatrixXd Whiten(const Eigen::MatrixXd& rows) const;
-  // Calls visit(frame, marker, first row) for each observed marker of the frames that are used.
+  bool IsObserved(const ReplayedMotion& motion, int frame, int point) const;
+  Eigen::VectorXd WhitenedResidual(const ReplayedMotion& motion) const;
+  Eigen::MatrixXd Whiten(const Eigen::MatrixXd& rows, const ReplayedMotion& motion) const;
+  // Calls visit(frame, point, first row) for each observed point of the frames that are used.
   template <typename Visit>
-  void ForEachObserved(const Visit& visit) const;
-  // Positions of the markers, in the model's frame, per unit of each amplitude and nuisance.
-  std::vector<Eigen::MatrixXd> MarkerResponses(const ReducedResponse& response,
-                                               const std::vector<double>& times) const;
+  void ForEachObserved(const ReplayedMotion& motion, const Visit& visit) const;
+  // For each used frame: positions of the markers, in the model's frame, or the rows of the
+  // patches, per unit of each amplitude and nuisance.
+  std::vector<Eigen::MatrixXd> PointResponses(const ReplayedMotion& motion,
+                                              const ReducedResponse& response,
+                                              const std::vector<double>& times) const;
 
   const RecordingModel& recording_;
   const SmoothForce& field_;
   MeasurementErrors errors_;
-  Eigen::MatrixXd shapes_;  // 3n × k, nodal shapes of the field, then of the holding forces
+  Eigen::Index components_;  // rows of a point: 3 of a marker, 1 of a patch
+  Eigen::MatrixXd shapes_;   // 3n × k, nodal shapes of the field, then of the holding forces
   Eigen::VectorXd prior_deviations_;
   std::vector<Eigen::Index> held_shape_;  // for each nuisance: column in shapes_, −1: no force
   std::vector<int> frames_;               // frames that are used, as columns of the motion
-  std::vector<Eigen::Matrix3d> deformation_;  // markers × used frames
+  std::vector<Eigen::Matrix3d> deformation_;  // markers × used frames; empty for scans
 };
 
 }  // namespace lacuna

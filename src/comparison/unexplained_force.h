@@ -1,4 +1,4 @@
-// The body force that would have made a fitted model follow the markers of one recording.
+// The body force that would have made a fitted model follow one recording.
 #ifndef LACUNA_COMPARISON_UNEXPLAINED_FORCE_H_
 #define LACUNA_COMPARISON_UNEXPLAINED_FORCE_H_
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/file_lock.h"
 
 namespace lacuna {
 namespace {
@@ -24,19 +25,6 @@ fs::path TemporaryName(const fs::path& file) {
   static std::atomic<unsigned> count{0};
   return file.parent_path() / ("." + file.filename().string() + "." + std::to_string(getpid()) +
                                "." + std::to_string(count++) + ".tmp");
-}
-
-// Tries to lock an open temporary file. The lock ends with the process that writes the file, so
-// that a temporary file whose lock is free was left by a process that is gone.
-bool LockTemporary(int descriptor, bool wait) {
-  struct flock lock {};
-  lock.l_type = F_WRLCK;
-  lock.l_whence = SEEK_SET;
-  int result = 0;
-  do {
-    result = fcntl(descriptor, wait ? F_OFD_SETLKW : F_OFD_SETLK, &lock);
-  } while (result != 0 && errno == EINTR);
-  return result == 0;
 }
 
 // Whether the open file has no name any more.
@@ -70,7 +58,9 @@ AtomicFile::AtomicFile(const fs::path& file) : file_(file) {
     temporary_ = TemporaryName(file_);
     descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0) Fail(errno);
-    LockTemporary(descriptor_, /*wait=*/true);
+    // The lock ends with this process, so that a temporary file whose lock is free was left by one
+    // that is gone.
+    LockFile(descriptor_, /*wait=*/true);
     if (!IsUnlinked(descriptor_)) return;
   }
 }
@@ -132,7 +122,7 @@ void RemoveLeftTemporaries(const fs::path& folder) {
   for (const fs::path& file : found) {
     const int descriptor = open(file.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor < 0) continue;
-    if (LockTemporary(descriptor, /*wait=*/false)) unlink(file.c_str());
+    if (LockFile(descriptor, /*wait=*/false)) unlink(file.c_str());
     close(descriptor);
   }
 }

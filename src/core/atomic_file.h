@@ -14,8 +14,9 @@ namespace lacuna {
 // cannot be written; the old content is then unchanged.
 void WriteFileAtomically(const std::filesystem::path& file, std::string_view content);
 
-// The same for content that is produced in pieces: call Write as often as needed, then Commit once.
-// Destroying the object without a Commit deletes the temporary file and leaves `file` unchanged.
+// Replaces the content of a file as WriteFileAtomically() does, for content that is produced in
+// pieces: call Write as often as needed, then Commit once. Destroying the object without a Commit
+// deletes the temporary file and leaves `file` unchanged.
 class AtomicFile {
  public:
   // Follows a symbolic link. Throws InputError for a device, pipe or folder, and if the temporary

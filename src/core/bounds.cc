@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+
+#include "core/parsed_word.h"
 
 namespace lacuna {
 
@@ -37,16 +40,10 @@ int ParseInteger(const std::string& text, int min, int max) {
   const std::string expected = max == std::numeric_limits<int>::max()
                                    ? fmt::format("a whole number ≥ {}", min)
                                    : fmt::format("a whole number from {} to {}", min, max);
-  size_t used = 0;
-  long long value = 0;
-  try {
-    value = std::stoll(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used == 0 || used != text.size() || value < min || value > max)
+  const auto value = ParseSignedWord<int>(text);
+  if (!value || *value < min || *value > max)
     throw std::invalid_argument(fmt::format("got \"{}\"; expected {}", text, expected));
-  return static_cast<int>(value);
+  return *value;
 }
 
 }  // namespace lacuna

@@ -4,11 +4,13 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "core/error.h"
+#include "core/field_path.h"
+#include "core/parsed_word.h"
 #include "core/text_file.h"
 #include "core/yaml_document.h"
 
@@ -44,12 +46,8 @@ int Occurrences(const YAML::Node& tree, const YAML::Node& wanted) {
 
 // The index in a step such as "[3"; std::nullopt if it is not the index of an item of the list.
 std::optional<size_t> IndexIn(const YAML::Node& list, const std::string& step) {
-  size_t index = 0;
-  const char* end = step.data() + step.size();
-  const auto [stop, error] = std::from_chars(step.data() + 1, end, index);
-  if (error != std::errc() || stop != end || !list.IsSequence() || index >= list.size())
-    return std::nullopt;
-  return index;
+  const auto index = ParseWord<size_t>(std::string_view(step).substr(1));
+  return index && list.IsSequence() && *index < list.size() ? index : std::nullopt;
 }
 
 // Sets or removes one entry of a tree.
@@ -93,7 +91,7 @@ class Change {
       path_ += step + "]";
     } else {
       if (!at.IsMap()) Fail(path_ + " is not a mapping");
-      path_ += (path_.empty() ? "" : ".") + step;
+      path_ = EntryOf(path_, step);
       const YAML::Node found = std::as_const(at)[step];
       if (!found || found.IsNull()) {
         at.remove(step);
@@ -141,7 +139,7 @@ class PathMover {
     if (!node.IsMap()) return;
     for (auto entry : node) {
       const std::string key = entry.first.Scalar();
-      const std::string below = field.empty() ? key : field + "." + key;
+      const std::string below = EntryOf(field, key);
       if (keys_.contains(key) && entry.second.IsScalar()) {
         entry.second = Moved(entry.second.Scalar(), FileOf(below));
       } else {
@@ -154,10 +152,7 @@ class PathMover {
   std::filesystem::path FileOf(const std::string& field) const {
     std::filesystem::path file = document_.FileOf(field);
     for (const YamlChange& change : changes_) {
-      const size_t length = change.field.size();
-      if (field.starts_with(change.field) &&
-          (field.size() == length || field[length] == '.' || field[length] == '['))
-        file = change.file;
+      if (LiesWithin(field, change.field)) file = change.file;
     }
     return file;
   }

@@ -9,17 +9,10 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/file_lock.h"
 
 namespace lacuna {
 namespace {
-
-// An exclusive lock on the whole file.
-struct flock WholeFile() {
-  struct flock lock {};
-  lock.l_type = F_WRLCK;
-  lock.l_whence = SEEK_SET;
-  return lock;
-}
 
 std::string Self() {
   std::array<char, 256> host{};
@@ -37,8 +30,7 @@ Claim::Claim(const std::filesystem::path& file)
     throw InputError({file.string()}, fmt::format("cannot be {}: {}", what, std::strerror(error)));
   };
   if (descriptor_ < 0) fail("written");
-  struct flock lock = WholeFile();
-  holds_ = fcntl(descriptor_, F_OFD_SETLK, &lock) == 0;
+  holds_ = LockFile(descriptor_, /*wait=*/false);
   if (!holds_ && errno != EAGAIN && errno != EACCES) fail("locked");
   const std::string self = Self();
   if (holds_ && (ftruncate(descriptor_, 0) != 0 ||
@@ -51,9 +43,8 @@ Claim::~Claim() { close(descriptor_); }
 std::string HolderOf(const std::filesystem::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return "";
-  struct flock lock = WholeFile();
   std::string holder;
-  if (fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK) {
+  if (IsLockedByAnother(descriptor)) {
     std::array<char, 512> text{};
     const ssize_t count = read(descriptor, text.data(), text.size());
     // The file is empty for a short time, because the name is written after the lock is acquired.

@@ -34,8 +34,8 @@ class Config {
   // Throws InputError if the file is absent, is not valid YAML, or is not a mapping at the top
   // level.
   static Config Load(const std::filesystem::path& file);
-  // The same for YAML in memory. `name` is used as the file name in messages and as the base of
-  // relative paths.
+  // Parses YAML in memory, with the failures of Load(). `name` is used as the file name in messages
+  // and as the base of relative paths.
   static Config Parse(const std::string& text, const std::string& name);
 
   // The functions below read `key` of this mapping. Without a default value the key is required.
@@ -100,7 +100,7 @@ class Config {
   // Throws InputError "field: message" at the position of `key`, or of this mapping for an empty
   // key.
   [[noreturn]] void Fail(const std::string& key, const std::string& message) const;
-  // The same at the position of an item, counted from 0, of the list at `key`.
+  // Fail() at the position of an item, counted from 0, of the list at `key`.
   [[noreturn]] void FailAtItem(const std::string& key, size_t item,
                                const std::string& message) const;
 

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/field_path.h"
 #include "core/suggestion.h"
 
 namespace lacuna {
 
 std::string ConfigNode::Field(const std::string& key) const {
-  if (key.empty()) return path;
-  return path.empty() ? key : path + "." + key;
+  return key.empty() ? path : EntryOf(path, key);
 }
 
 YAML::Node ConfigNode::Find(const std::string& key) const {
@@ -45,12 +45,8 @@ std::string ConfigNode::Scalar(const YAML::Node& entry, const std::string& field
 
 void ConfigNode::Fail(const YAML::Mark& mark, const std::string& field,
                       const std::string& message) const {
-  SourcePosition position{document->FileOf(field).string()};
-  if (!mark.is_null()) {
-    position.line = mark.line + 1;
-    position.column = mark.column + 1;
-  }
-  throw InputError(position, field.empty() ? message : field + ": " + message);
+  throw InputError(PositionOf(document->FileOf(field), mark),
+                   field.empty() ? message : field + ": " + message);
 }
 
 }  // namespace lacuna

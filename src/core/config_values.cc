@@ -122,7 +122,8 @@ std::vector<std::string> Config::Texts(const std::string& key) const {
       texts.push_back(entry.Scalar());
     } else if (entry.IsSequence()) {
       for (const auto& item : entry)
-        texts.push_back(node_->Scalar(item, node_->Field(key), "a string"));
+        texts.push_back(node_->Scalar(item, fmt::format("{}[{}]", node_->Field(key), texts.size()),
+                                      "a string"));
     } else {
       node_->Fail(entry.Mark(), node_->Field(key),
                   "got a mapping; expected a string or a list of strings");

@@ -2,7 +2,9 @@
 //
 // Lacuna distinguishes three kinds of failure: errors in the user's input (InputError, caught once
 // in main), numerical failures such as no convergence (a status in the result, never an exception)
-// and programming errors (glog's CHECK).
+// and programming errors (glog's CHECK). Two more exceptions end what is being computed without a
+// result, and are caught in main, too: OutOfMemory (core/memory_limit.h) and Interrupted
+// (core/interrupt.h).
 #ifndef LACUNA_CORE_ERROR_H_
 #define LACUNA_CORE_ERROR_H_
 

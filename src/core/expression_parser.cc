@@ -11,14 +11,13 @@
 
 #include "core/expression_error.h"
 #include "core/suggestion.h"
+#include "core/utf8.h"
 
 namespace lacuna {
 namespace {
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-// Whether `c` is a byte of a UTF-8 character other than the first one.
-bool ContinuesCharacter(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
 struct Function {
   const char* name;

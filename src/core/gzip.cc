@@ -42,6 +42,7 @@ std::string Gunzip(std::string_view compressed) {
   CHECK_EQ(inflateInit2(&stream, MAX_WBITS + kGzipFormat), Z_OK);
   stream.next_in = InputOf(compressed);
   stream.avail_in = static_cast<uInt>(compressed.size());
+  CHECK_EQ(stream.avail_in, compressed.size()) << "too many bytes for one call";
   std::string bytes;
   std::array<char, 1 << 16> piece;
   int status = Z_OK;

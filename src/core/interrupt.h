@@ -16,11 +16,11 @@
 
 namespace lacuna {
 
-// How long a computation may take to stop by itself. Longer: less work is thrown away, and Ctrl-C
-// seems not to work.
+// How long a computation may take to stop by itself. With a longer time less work is thrown away,
+// but Ctrl-C seems not to work.
 inline constexpr std::chrono::milliseconds kStopGrace{1500};
 
-// Thrown by ThrowIfInterrupted; main catches it, says kStoppedMessage and exits with ExitCode().
+// Thrown by ThrowIfInterrupted; main catches it, prints kStoppedMessage and exits with ExitCode().
 class Interrupted : public std::runtime_error {
  public:
   explicit Interrupted(int signal) : std::runtime_error("interrupted"), signal_(signal) {}

@@ -14,8 +14,9 @@
 
 namespace lacuna {
 
-// Ends a command. It is no InputError, so that nobody takes what does not fit into memory for what
-// cannot be computed.
+// Thrown where a computation would exceed the limit. It is not an InputError: code that catches
+// those, and takes the input for unusable, must not catch it, since the same input can be used with
+// more memory.
 class OutOfMemory : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

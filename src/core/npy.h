@@ -29,7 +29,8 @@ NpyArray ReadNpy(const std::filesystem::path& file);
 // Reads a 2-D array as rows × columns and a 1-D array as one column. Throws InputError for any
 // other number of dimensions.
 Eigen::MatrixXd ReadNpyMatrix(const std::filesystem::path& file);
-// The same for integers. Throws InputError for an array of floating-point numbers.
+// Reads an array of integers in the shapes of ReadNpyMatrix(). Throws InputError for an array of
+// floating-point numbers.
 MatrixXi64 ReadNpyIntegers(const std::filesystem::path& file);
 
 // Writes a 2-D array atomically in Fortran order; a matrix with one column stays 2-D. Throws

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/utf8.h"
 
 namespace lacuna {
 namespace {
@@ -52,7 +53,7 @@ bool IsUtf8(std::string_view text) {
     const int following = lead < 0x80 ? 0 : lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : 1;
     if ((lead >= 0x80 && lead < 0xc2) || lead > 0xf4) return false;
     for (int k = 0; k < following; ++k, ++i) {
-      if (i >= text.size() || (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return false;
+      if (i >= text.size() || !ContinuesCharacter(text[i])) return false;
     }
   }
   return true;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "core/utf8.h"
+
 namespace lacuna {
 namespace {
 
@@ -14,8 +16,8 @@ std::string Spaces(std::string_view text, size_t width) {
 }  // namespace
 
 size_t DisplayWidth(std::string_view text) {
-  return static_cast<size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) >> 6) != 2; }));
+  return static_cast<size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return !ContinuesCharacter(c); }));
 }
 
 std::string PaddedRight(std::string_view text, size_t width) {

@@ -60,11 +60,11 @@ std::string HowItEnded(int status) {
 
 }  // namespace
 
-int ShareOut(size_t count, const WorkerOptions& options, const std::function<void(size_t)>& job) {
+bool RunInProcesses(size_t count, const WorkerOptions& options,
+                    const std::function<void(size_t)>& job) {
   std::map<pid_t, size_t> running;
   size_t next = 0;
-  int failed = 0;
-  bool told = false;
+  bool failed = false, told = false;
   while (true) {
     while (next < count && static_cast<int>(running.size()) < options.workers &&
            !InterruptRequested()) {
@@ -92,14 +92,14 @@ int ShareOut(size_t count, const WorkerOptions& options, const std::function<voi
         continue;
       }
       const bool done = WIFEXITED(status) && WEXITSTATUS(status) == 0;
-      failed |= !done;
+      failed = failed || !done;
       if (!done && !StoppedFromOutside(status) && options.crashed)
         options.crashed(at->second, HowItEnded(status));
       at = running.erase(at);
     }
     if (!running.empty()) std::this_thread::sleep_for(kPollInterval);
   }
-  return failed || next < count;
+  return !failed && next == count;
 }
 
 }  // namespace lacuna

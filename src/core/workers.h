@@ -20,10 +20,11 @@ struct WorkerOptions {
 // Calls job(k) for every k in [0, count), each in a separate process (fork), so that a crash does
 // not affect the other jobs. Several calls, even on several machines, may work on the same list if
 // each job claims its task (core/claim.h) and skips a task that is finished. After SIGINT or
-// SIGTERM, no further job is started, and SIGTERM is sent to the running jobs. Returns 0 if all
-// jobs ended normally, otherwise 1. Throws InputError if no process can be started. Call it before
-// any thread has been started, since only the calling thread exists in a forked process.
-int ShareOut(size_t count, const WorkerOptions& options, const std::function<void(size_t)>& job);
+// SIGTERM, no further job is started, and SIGTERM is sent to the running jobs. Returns whether all
+// jobs were started and ended normally. Throws InputError if no process can be started. Call it
+// before any thread has been started, since only the calling thread exists in a forked process.
+bool RunInProcesses(size_t count, const WorkerOptions& options,
+                    const std::function<void(size_t)>& job);
 
 }  // namespace lacuna
 

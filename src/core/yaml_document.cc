@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-#include "core/error.h"
+#include "core/field_path.h"
 #include "core/text_file.h"
 
 namespace lacuna {
@@ -17,12 +17,7 @@ namespace {
 
 [[noreturn]] void Fail(const std::filesystem::path& file, const YAML::Mark& mark,
                        const std::string& message) {
-  SourcePosition position{file.string()};
-  if (!mark.is_null()) {
-    position.line = mark.line + 1;
-    position.column = mark.column + 1;
-  }
-  throw InputError(position, message);
+  throw InputError(PositionOf(file, mark), message);
 }
 
 // Throws InputError for a repeated key, of which YAML-cpp would silently discard one value.
@@ -100,11 +95,7 @@ YAML::Node Parse(const std::string& text, const std::filesystem::path& file) {
 void Forget(const std::string& field, YamlDocument* document) {
   auto& files = document->file_of_field;
   for (auto at = files.begin(); at != files.end();) {
-    const std::string& name = at->first;
-    const bool within =
-        name.compare(0, field.size(), field) == 0 &&
-        (name.size() == field.size() || name[field.size()] == '.' || name[field.size()] == '[');
-    at = within ? files.erase(at) : std::next(at);
+    at = LiesWithin(at->first, field) ? files.erase(at) : std::next(at);
   }
 }
 
@@ -112,9 +103,7 @@ void Forget(const std::string& field, YamlDocument* document) {
 // that are being read, from the main file to the innermost piece.
 void PutInPieces(YAML::Node node, const std::string& path,
                  const std::vector<std::filesystem::path>& files, YamlDocument* document) {
-  const auto below = [&path](const std::string& key) {
-    return path.empty() ? key : path + "." + key;
-  };
+  const auto below = [&path](const std::string& key) { return EntryOf(path, key); };
   if (node.IsSequence()) {
     for (size_t i = 0; i < node.size(); ++i)
       PutInPieces(node[i], fmt::format("{}[{}]", path, i), files, document);
@@ -160,6 +149,11 @@ void PutInPieces(YAML::Node node, const std::string& path,
 }
 
 }  // namespace
+
+SourcePosition PositionOf(const std::filesystem::path& file, const YAML::Mark& mark) {
+  if (mark.is_null()) return {file.string()};
+  return {file.string(), mark.line + 1, mark.column + 1};
+}
 
 const std::filesystem::path& YamlDocument::FileOf(std::string field) const {
   while (!field.empty()) {

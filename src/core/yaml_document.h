@@ -1,5 +1,5 @@
-// The YAML document behind a Config: parsed, checked for repeated keys, and with the pieces that it
-// includes by `use` inserted. Private to core.
+// The YAML document that a Config reads: parsed, checked for repeated keys, and with the pieces
+// that it includes by `use` inserted. Private to core.
 #ifndef LACUNA_CORE_YAML_DOCUMENT_H_
 #define LACUNA_CORE_YAML_DOCUMENT_H_
 
@@ -8,9 +8,12 @@
 #include <memory>
 #include <string>
 
+#include "core/error.h"
+
 namespace YAML {
 class Node;
-}
+struct Mark;
+}  // namespace YAML
 
 namespace lacuna {
 
@@ -24,6 +27,9 @@ struct YamlDocument {
   // contains it, otherwise the main file.
   const std::filesystem::path& FileOf(std::string field) const;
 };
+
+// The position of `mark` in `file`; the file as a whole for a null mark.
+SourcePosition PositionOf(const std::filesystem::path& file, const YAML::Mark& mark);
 
 // Parses `text`. `file` is used as its name in messages and as the base of relative paths. An entry
 // `use: piece.yaml` in a mapping (a path relative to the file that contains it) inserts those

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "analysis/linear_evidence.h"
-#include "scan/random_bits.h"
+#include "core/random_bits.h"
 
 namespace lacuna {
 namespace {

@@ -13,9 +13,8 @@ struct BodyExtent {
   Eigen::Matrix3d axis;    // columns: principal axes, the longest first; their largest component is
                            // positive
   Eigen::Vector3d length;  // m, along the axes
-  // Of a body that is not a bar: the centres of parts of about equal volume (3 × places, m), and
-  // the distance below which two of them are neighbours, m. Empty for a bar, whose places lie along
-  // its length.
+  // The centres of parts of about equal volume (3 × places, m), and the distance below which two of
+  // them are neighbours, m. Empty for a bar, whose places lie along its length.
   Eigen::Matrix3Xd places;
   double spacing = 0;
 

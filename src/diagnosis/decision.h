@@ -22,8 +22,8 @@ namespace lacuna {
 
 struct Decision {
   Verdict verdict = Verdict::kNoPower;
-  // The effects and nuisances of the verdict, the most probable one first. Of "not in library": the
-  // effect that explains most of the residual, if its probability allows a name.
+  // The effects and nuisances of the verdict, the most probable one first. For "not in library" it
+  // is the effect that explains most of the residual, if its probability allows a name.
   std::vector<std::string> names;
   DecisionRecord record;  // without power and separations (recording_power.h)
 };

@@ -13,8 +13,8 @@
 
 namespace lacuna {
 
-// Without effects in place of adopted nuisances. `nuisances`: those of the ranking, with the
-// evidence of their refits (WeighNuisances).
+// The input of a decision, without effects in place of adopted nuisances (AddAlternatives()).
+// `nuisances`: those of the ranking, with the evidence of their refits (WeighNuisances).
 DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanking& ranked,
                                 const RefitNoise& noise,
                                 const std::vector<ScoredNuisance>& nuisances);

@@ -57,8 +57,8 @@ struct Naming {
   Level level = Level::kNothing;
   // The smallest set that reaches kStatedProbability: indices of the posterior, in its order.
   std::vector<size_t> kept;
-  // At the level kCommon what the kept hypotheses have in common, otherwise all that they contain
-  // but for nuisances beside an effect.
+  // The effects and nuisances that are named: at the level kCommon those that the kept hypotheses
+  // have in common, otherwise all that they contain but for nuisances beside an effect.
   std::vector<std::string> names;
 };
 Naming NameFrom(const std::vector<HypothesisProbability>& posterior);

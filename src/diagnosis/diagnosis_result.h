@@ -35,7 +35,7 @@ struct RankedEffect {
   std::optional<ByDataKind> removed;  // RemovedMisfit (removed_misfit.h) of the refit
   double rms_over_sigma = 0;          // all frames, with the adopted nuisances at their best
   Eigen::VectorXd values;             // the effect's parameters; empty: there is no usable refit
-  Eigen::VectorXd model;              // as in EffectRefit
+  Eigen::VectorXd baseline_values;    // as in EffectRefit
   std::vector<ParameterEstimate> sizes;  // of the parameters that make its size
   std::vector<NamedEstimate> others;     // as in EffectRefit
 

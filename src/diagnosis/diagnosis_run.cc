@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 
 // Raised when the diagnosis changes so that its result does.
-constexpr int kDiagnosisVersion = 52;
+constexpr int kDiagnosisVersion = 53;
 
 std::filesystem::path ResultFile(const std::filesystem::path& run) {
   return run / "diagnosis" / "diagnosis.json";
@@ -69,13 +69,13 @@ json SettingsOf(const Diagnosis& diagnosis) {
     }
     json known = json::object();
     for (const auto& [name, range] : candidate.known) known[name] = {range.min, range.max};
-    settings[candidate.type] = {
-        {"values", std::vector<double>(values.begin(), values.end())},
-        {"model", std::vector<double>(effect.model.begin(), effect.model.end())},
-        {"amplitude", candidate.amplitude},
-        {"refined", candidate.refined},
-        {"known", known},
-        {"replaces_material", candidate.replaces_material}};
+    settings[candidate.type] = {{"values", std::vector<double>(values.begin(), values.end())},
+                                {"model", std::vector<double>(effect.baseline_values.begin(),
+                                                              effect.baseline_values.end())},
+                                {"amplitude", candidate.amplitude},
+                                {"refined", candidate.refined},
+                                {"known", known},
+                                {"replaces_material", candidate.replaces_material}};
   }
   return settings;
 }
@@ -179,7 +179,7 @@ ScoredEffect DiagnosedEffect(const FittedRun& fitted, const std::filesystem::pat
       candidate.known[name] = {range.at(0), range.at(1)};
     candidate.replaces_material = settings.at("replaces_material");
     const std::vector<double> model = settings.at("model");
-    scored.model =
+    scored.baseline_values =
         Eigen::Map<const Eigen::VectorXd>(model.data(), static_cast<Eigen::Index>(model.size()));
     const std::string other =
         OriginFile(run).string() + ": is of another catalogue; diagnose again";

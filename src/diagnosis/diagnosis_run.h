@@ -38,7 +38,8 @@ std::optional<KeptDiagnosis> FindDiagnosis(const std::filesystem::path& run);
 ScoredEffect DiagnosedEffect(const FittedRun& fitted, const std::filesystem::path& run,
                              const RecordedEffect& effect);
 
-// The same of a diagnosis of this fit with whatever options; nothing where none has the effect.
+// DiagnosedEffect() for the effect of this type in a diagnosis of this fit with whatever options;
+// nothing where none has the effect.
 std::optional<ScoredEffect> FindDiagnosed(const FittedRun& fitted, const std::filesystem::path& run,
                                           const std::string& type);
 

@@ -169,8 +169,9 @@ void FinishBeside(const ExtendedProblem& extended, const RefitSetting& setting,
   const LinearisedMisfit& misfit = refit->hypothesis.misfit;
   refit->message = misfit.message;
   if (!misfit.usable) return;
-  refit->amounts = extended.AmountsAt(misfit);
-  const Eigen::VectorXd residual = misfit.residual + setting.adopted.columns * refit->amounts;
+  refit->nuisance_amounts = extended.AmountsAt(misfit);
+  const Eigen::VectorXd residual =
+      misfit.residual + setting.adopted.columns * refit->nuisance_amounts;
   const Eigen::VectorXd white = WhitenedRows(residual, of_baseline);
   refit->errors.without_nuisances = HeldOutInNoise(white, of_baseline);
   if (settles) {
@@ -204,8 +205,8 @@ EffectRefit FinishedRefit(ExtendedFit fit, const ExtendedProblem& extended,
       HypothesisAt(with, calibration.parameters, setting.adopted, misfit, nullptr, known);
   refit.errors = ErrorsOf(with, calibration.parameters, known);
   if (effect != nullptr) {
-    refit.effect = extended.OwnParameters(calibration.parameters);
-    refit.model = calibration.parameters.head(
+    refit.effect_values = extended.OwnParameters(calibration.parameters);
+    refit.baseline_values = calibration.parameters.head(
         static_cast<Eigen::Index>(setting.model.problem.study().fitted.size()));
     refit.sizes = extended.SizesIn(calibration);
     refit.others = extended.OthersIn(calibration);

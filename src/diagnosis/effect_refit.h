@@ -30,9 +30,9 @@ struct EffectRefit {
   // than the effect can explain, so that it refutes nothing (Predicts).
   std::string unconverged;
   Calibration calibration;
-  Eigen::VectorXd amounts;               // of the adopted nuisances, at the end of the fit
-  Eigen::VectorXd effect;                // all parameters of the effect, in the order of its card
-  Eigen::VectorXd model;                 // the fitted parameters that the model had before
+  Eigen::VectorXd nuisance_amounts;  // of the adopted nuisances, at the end of the fit
+  Eigen::VectorXd effect_values;     // of all parameters of the effect, in the order of its card
+  Eigen::VectorXd baseline_values;   // of the fitted parameters that the model had before
   std::vector<ParameterEstimate> sizes;  // those that make its size; empty for a pilot
   std::vector<NamedEstimate> others;     // its other fitted parameters: place, time
   ModelErrors errors;
@@ -100,7 +100,7 @@ struct RefitOptions {
   // The refit with the same nuisances and without the effect, beside whose parameters the refit may
   // start; null: unknown.
   const EffectRefit* without = nullptr;
-  // As in CalibrationOptions; a fit that this ends is not settled.
+  // CalibrationOptions::hopeless_cost of the fit; a fit that this ends is not settled.
   double hopeless_cost = std::numeric_limits<double>::infinity();
 };
 
@@ -110,10 +110,9 @@ struct RefitOptions {
 EffectRefit Refit(const RefitSetting& setting, const ScoredVariant* effect,
                   const RefitOptions& options = {});
 
-// The same fit from these values of the problem's parameters, at which another fit of the same
-// model has ended: one that had not converged, or one beside other nuisances or with a further
-// effect. Values beyond the bounds of the parameters are moved to them. `hopeless_cost`: as in
-// RefitOptions.
+// Refit() from these values of the problem's parameters, at which another fit of the same model has
+// ended: one that had not converged, or one beside other nuisances or with a further effect. Values
+// beyond the bounds of the parameters are moved to them. `hopeless_cost`: as in RefitOptions.
 EffectRefit RefitFromValues(const RefitSetting& setting, const ScoredVariant* effect,
                             const Eigen::VectorXd& values,
                             double hopeless_cost = std::numeric_limits<double>::infinity());
@@ -137,13 +136,13 @@ struct MovedRefit {
   // The log evidence that the best change of its parameters would gain, to first order.
   double gain_in_reach = 0;
 };
-// Moves a refit there; nothing is predicted. Its estimates stay those of its fit. `noise`: in which
-// the gain is measured.
+// Moves a refit to the parameters that are best beside the nuisances of `setting`; nothing is
+// predicted. Its estimates stay those of its fit. `noise`: in which the gain is measured.
 MovedRefit MovedBeside(const RefitSetting& setting, const ScoredVariant& effect, EffectRefit refit,
                        const NoiseLevel& noise);
 
-// As MovedBeside(), and settled from there with the Jacobian that the refit has, which takes a few
-// predictions without derivatives.
+// A refit moved as by MovedBeside() and settled from there with the Jacobian that the refit has,
+// which takes a few predictions without derivatives.
 EffectRefit SettledBeside(const RefitSetting& setting, const ScoredVariant& effect,
                           EffectRefit refit);
 

@@ -46,8 +46,8 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
   const std::filesystem::path experiment =
       std::filesystem::absolute(fitted.study.file).lexically_normal();
   PredictionStudy judged = fitted.study;
-  if (effect.model.size() > 0)
-    judged.effects = WithValues(judged.effects, judged.fitted, effect.model);
+  if (effect.baseline_values.size() > 0)
+    judged.effects = WithValues(judged.effects, judged.fitted, effect.baseline_values);
   const PredictionStudy study = WithEffect(judged, effect);
   const std::string name = fitted.study.name + "+" + effect.candidate.type;
 

@@ -53,8 +53,8 @@ Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& 
 }
 
 // The prediction of a fit, of the fitted frames.
-Prediction FittedPart(const LinearisedMisfit& misfit) {
-  Prediction prediction;
+ResidualEvaluation FittedPart(const LinearisedMisfit& misfit) {
+  ResidualEvaluation prediction;
   prediction.usable = misfit.usable;
   prediction.message = misfit.message;
   if (!misfit.usable) return prediction;
@@ -158,8 +158,8 @@ ParameterEstimate ExtendedProblem::Reported(const Calibration& calibration, size
   // The deviation of the estimate grows with the residual that a refit leaves; the error does not.
   const double unknown = std::sqrt(2 * baseline_.model_error * baseline_.noise.variance) /
                          std::max(1.0, calibration.rms);
-  CountModelErrors(parameters_[k], estimate.value, unknown * estimate.posterior_deviation,
-                   &estimate);
+  WidenIntervalByModelErrors(parameters_[k], estimate.value, unknown * estimate.posterior_deviation,
+                             &estimate);
   return estimate;
 }
 
@@ -271,7 +271,7 @@ ExtendedFit ExtendedProblem::Fit(const std::vector<CalibratedParameter>& paramet
   Memory memory;
   int evaluations = 0;
   const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
-    const Prediction prediction = Predict(at, with_jacobian, &memory);
+    const ResidualEvaluation prediction = Predict(at, with_jacobian, &memory);
     progress->Report(++evaluations, prediction.usable ? RootMeanSquare(prediction) : std::nan(""));
     return prediction;
   };
@@ -290,9 +290,9 @@ Calibration ExtendedProblem::CalibrateAfresh(Progress* progress) const {
               [&] { return FitInStages(with_, with_.Start(), progress); });
 }
 
-Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobian,
-                                    Memory* memory) const {
-  Prediction prediction;
+ResidualEvaluation ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobian,
+                                            Memory* memory) const {
+  ResidualEvaluation prediction;
   if (with_jacobian && covers_held_out_) {
     // The last such prediction becomes the fit's misfit.
     memory->latest = with_.Linearise(at, {.with_jacobian = true, .near = &baseline_.misfit});
@@ -310,7 +310,7 @@ Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobia
 
 double ExtendedProblem::ResidualNorm(const Eigen::VectorXd& at) const {
   Memory memory;
-  const Prediction prediction = Predict(at, /*with_jacobian=*/false, &memory);
+  const ResidualEvaluation prediction = Predict(at, /*with_jacobian=*/false, &memory);
   return prediction.usable ? prediction.residual.norm() : kInfinity;
 }
 

@@ -41,8 +41,9 @@ struct NamedEstimate {
 // A fit of an extended problem.
 struct ExtendedFit {
   Calibration calibration;
-  // At the end of the fit, with its Jacobian, as Linearise() gives it from the baseline's misfit.
-  // Not usable if the fit was kept, the recordings are scans, or many frames are held out.
+  // The misfit at the end of the fit, with its Jacobian, as Linearise() gives it from the
+  // baseline's misfit. Not usable if the fit was kept, the recordings are scans, or many frames are
+  // held out.
   LinearisedMisfit misfit;
 };
 
@@ -107,7 +108,7 @@ class ExtendedProblem {
     LinearisedMisfit latest = {};
     Eigen::VectorXd of_latest = {};
   };
-  Prediction Predict(const Eigen::VectorXd& at, bool with_jacobian, Memory* memory) const;
+  ResidualEvaluation Predict(const Eigen::VectorXd& at, bool with_jacobian, Memory* memory) const;
   // The estimate of parameter `k` as SizesIn() and OthersIn() report it.
   ParameterEstimate Reported(const Calibration& calibration, size_t k) const;
   double ResidualNorm(const Eigen::VectorXd& at) const;  // infinite if it cannot be predicted

@@ -80,10 +80,10 @@ std::vector<NuisanceTrial> NuisanceControls();
 // there.
 std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
                                               const std::vector<NuisanceCandidate>& known = {});
-// Those of them that all rankings of one scene share (NuisanceCard::is_shared_in_scene). They do
-// not need `grip_columns`.
+// The nuisances of ModelNuisances() that all rankings of one scene share
+// (NuisanceCard::is_shared_in_scene). They do not need `grip_columns`.
 std::vector<NuisanceCandidate> SceneNuisances(const NuisanceContext& context);
-// Those of them that belong to every model.
+// The nuisances of ModelNuisances() that belong to every model.
 std::vector<NuisanceCandidate> NuisancesOfEveryModel(const NuisanceContext& context);
 
 // The nuisances of each grip; `grip_columns` as in NuisanceContext, after the simulation.

@@ -66,7 +66,7 @@ class ProjectedHypotheses {
   // The logarithm of the Bayes factor of each hypothesis of the space against the taken columns
   // alone, from t'. 0 for a hypothesis whose columns are taken.
   Eigen::VectorXd LogBayesFactors(const Eigen::VectorXd& projected) const;
-  // The same for the residual of the space itself.
+  // LogBayesFactors() of the residual of the space itself.
   Eigen::VectorXd FactorsOfResidual() const {
     return LogBayesFactors(Project(space_.model.toward()));
   }

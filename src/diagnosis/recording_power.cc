@@ -6,10 +6,10 @@
 #include <map>
 #include <memory>
 
+#include "core/random_bits.h"
 #include "diagnosis/adequacy.h"
 #include "diagnosis/decision.h"
 #include "diagnosis/decision_rules.h"
-#include "scan/random_bits.h"
 
 namespace lacuna {
 namespace {

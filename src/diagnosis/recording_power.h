@@ -34,8 +34,9 @@ FoundEffect FindEffect(const HypothesisSpace& space, const std::string& effect);
 std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
                                          const std::vector<std::string>& effects);
 
-// The same for one effect. If `is_known` is false, it is taken out of the catalogue, and the right
-// answer is that something unknown is left. Nothing where the residual does not show the effect.
+// SimulatePower() for one effect. If `is_known` is false, it is taken out of the catalogue, and the
+// right answer is that something unknown is left. Nothing where the residual does not show the
+// effect.
 std::optional<RecordedPower> PowerToFind(DecisionInput input, const std::string& effect,
                                          bool is_known);
 
@@ -44,7 +45,7 @@ std::optional<RecordedPower> PowerToFind(DecisionInput input, const std::string&
 // directions.
 std::vector<RecordedSeparation> Separations(const DecisionInput& input,
                                             const std::vector<std::string>& effects);
-// The same for effects at given sizes, which need not be those of the residual of `space`.
+// Separations() of effects at given sizes, which need not be those of the residual of `space`.
 std::vector<RecordedSeparation> SeparationsOf(const HypothesisSpace& space,
                                               const std::vector<FoundEffect>& effects);
 

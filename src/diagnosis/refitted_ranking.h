@@ -41,8 +41,8 @@ struct FittedPair {
 struct AlongRefit {
   std::string type;                              // of that effect
   std::shared_ptr<const EffectRanking> ranking;  // not null
-  // For the refits with other effects: with that effect among the hypotheses, which has the columns
-  // of the baseline. Not null.
+  // The ranking beside which the refits with other effects stand: it also has that effect among the
+  // hypotheses, with the columns of the baseline. Not null.
   std::shared_ptr<const EffectRanking> for_others;
 };
 
@@ -72,12 +72,12 @@ struct RefittedRanking {
   bool IsUsable(size_t effect) const { return effects[effect].HasUsableRefit(); }
   // The index of the effect of this type; nothing if it has no usable refit.
   std::optional<size_t> FindUsable(const std::string& type) const;
-  // Of BestRefit; 0 if there is none.
+  // The evidence of the best refit; 0 if there is none.
   double BestEvidence() const { return best ? best->evidence : 0; }
   // Makes this the refit of the effect (SetRefit).
   void Take(size_t effect, VariantRefit fitted);
-  // The same where the effect has no usable refit, or one with less evidence. Returns whether it
-  // has taken it.
+  // Calls Take() if the effect has no usable refit, or one with less evidence. Returns whether it
+  // has taken the refit.
   bool TakeIfBetter(size_t effect, VariantRefit fitted, const NoiseLevel& noise);
 };
 

@@ -18,8 +18,8 @@ namespace lacuna {
 ByDataKind RemovedMisfit(const FittedHypothesis& before, const FittedHypothesis& after,
                          const NoiseLevel& noise, const std::vector<DataKind>& kinds);
 
-// The same with the kinds of data of the problem's recordings. Empty where the fitted ones have one
-// kind only.
+// RemovedMisfit() with the kinds of data of the problem's recordings. Empty where the fitted
+// recordings have one kind only.
 std::optional<ByDataKind> RemovedMisfit(const FittedHypothesis& before,
                                         const FittedHypothesis& after, const NoiseLevel& noise,
                                         const CalibrationProblem& problem);

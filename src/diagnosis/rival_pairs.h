@@ -16,7 +16,7 @@ namespace lacuna {
 // Two effects that may be missing together. A pair is fitted from the refit of the first one.
 struct PairToFit {
   std::string first, further;
-  // Of a rival of another pair: the evidence that the replacement of one effect costs, to first
+  // The evidence that the replacement of one effect costs, for a rival of another pair: to first
   // order beside the first effect where that stays, else between the refits of the two first
   // effects alone.
   double lost = 0;

@@ -23,12 +23,12 @@ struct SceneColumns {
   // What the fit has found about the mesh; empty: nothing.
   std::optional<OtherMesh> other_mesh = {};
 
-  // For the same recordings, simulated with another time step: without the columns of the step, and
-  // without the pilots.
+  // The columns for the same recordings, simulated with another time step: without the columns of
+  // the step, and without the pilots.
   SceneColumns ForOtherStep() const;
-  // For the beginnings of the recordings: the rows of so many first frames as each recording of
-  // `beginnings` has, without the pilots. `whole`: the layout of the columns, with the parts of
-  // each of them in the same order. CHECKs the numbers of recordings and frames.
+  // The columns for the beginnings of the recordings: the rows of so many first frames as each
+  // recording of `beginnings` has, without the pilots. `whole`: the layout of the columns, with the
+  // parts of each of them in the same order. CHECKs the numbers of recordings and frames.
   SceneColumns ForFirstFrames(const std::vector<LinearisedMisfit::Part>& whole,
                               const std::vector<PredictedRecording>& beginnings) const;
 };

@@ -33,7 +33,7 @@ struct ScoredEffect : ScoredVariant {
   std::vector<std::string> parameters, units;  // of score.size
   std::vector<std::string> look_alikes;  // effects that first order cannot distinguish from it
   // Where its refit ended: the fitted parameters that the model had before. Empty: no usable refit.
-  Eigen::VectorXd model;
+  Eigen::VectorXd baseline_values;
   // Further variants with more evidence than their neighbours in place, direction or time, the best
   // first: a bar that is softer at one end may look like one that is stiffer at the other.
   std::vector<ScoredVariant> elsewhere;

@@ -13,7 +13,7 @@ namespace lacuna {
 
 class Progress;
 
-// The same recordings with a shorter time step.
+// The study of the same recordings with a shorter time step, and its problem.
 struct ShorterStep {
   std::unique_ptr<const PredictionStudy> study;
   std::unique_ptr<const CalibrationProblem> problem;  // of `study`

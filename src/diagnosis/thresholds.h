@@ -88,8 +88,9 @@ struct RefitThresholds {
   double explained_excess = 0.85;
   // ... where that excess is more than this share of the noise, which is only estimated.
   double noise_uncertainty = 0.2;
-  // It is also likely if the rms of the held-out frames grows by more than this factor.
-  // Higher: a misplaced refit is accepted. Lower: noise alone repeats a refit.
+  // A refit is also likely to have ended in a local minimum if the rms of the held-out frames grows
+  // by more than this factor. Higher: a misplaced refit is accepted. Lower: noise alone repeats a
+  // refit.
   double held_out_growth = 1.1;
   // A first-order step that would reduce a modulus below this share of itself is not followed.
   double least_modulus_share = 0.2;

@@ -71,8 +71,8 @@ void SetRefit(ScoredVariant variant, const EffectRefit& refit, RankedEffect* eff
   changed.unconverged = refit.unconverged;
   changed.errors = refit.errors;
   if (refit.message.empty()) {
-    changed.values = refit.effect;
-    changed.model = refit.model;
+    changed.values = refit.effect_values;
+    changed.baseline_values = refit.baseline_values;
     changed.sizes = refit.sizes;
     changed.others = refit.others;
   }

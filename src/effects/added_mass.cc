@@ -4,19 +4,20 @@
 
 #include <algorithm>
 
+#include "effects/free_fall.h"
+
 namespace lacuna {
 
 void AddedMass::SetParameters(const Eigen::VectorXd& values) {
   CHECK_EQ(values.size(), static_cast<Eigen::Index>(Card().parameters.size()));
-  const Eigen::Index others = values.size() - 1;
-  if (parameters_.size() == 0 || parameters_.tail(others) != values.tail(others)) {
-    mass_.Forget();
-  }
   parameters_ = values;
+  mass_.SetSettings(values.tail(values.size() - 1));
 }
 
 std::shared_ptr<const Eigen::VectorXd> AddedMass::Mass(const Body& body) const {
-  return mass_.Of(body, [this](const Body& at_rest) { return MassPerUnit(at_rest); });
+  return mass_.Of(body, [this](const Body& at_rest, const Eigen::VectorXd& /*settings*/) {
+    return MassPerUnit(at_rest);
+  });
 }
 
 double AddedMass::Size(const Body&) const { return parameters_[0]; }
@@ -57,13 +58,7 @@ void AddedMass::AddParameterDerivative(const Kinematics& at, int parameter,
 
 std::optional<double> AddedMass::Energy(const Kinematics& at) const {
   if (at.has_inertia) return std::nullopt;
-  const auto mass = Mass(at.body);
-  double energy = 0;
-  for (int i = 0; i < at.body.NodeCount(); ++i) {
-    energy -= Size(at.body) * (*mass)[i] *
-              Gravity().dot(at.position.segment<3>(3 * i) - at.body.mesh.nodes.col(i));
-  }
-  return energy;
+  return WeightEnergy(at, Size(at.body) * *Mass(at.body), Gravity());
 }
 
 }  // namespace lacuna

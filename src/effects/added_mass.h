@@ -36,7 +36,8 @@ class AddedMass : public Effect {
   void SetParameters(const Eigen::VectorXd& values);
 
  protected:
-  // μ at each node (n), kg per unit of θ, from the other parameters and the body at rest.
+  // μ at each node (n), kg per unit of θ. It may depend on the body at rest and on all parameters
+  // but θ; it is computed again when one of those changes.
   virtual Eigen::VectorXd MassPerUnit(const Body& body) const = 0;
 
   // ∂μ/∂(parameter) at each node (n), for a parameter that is not a setting; `mass`: μ. The default
@@ -47,7 +48,7 @@ class AddedMass : public Effect {
   // The size θ on a body: the first parameter, unless its zero depends on the body.
   virtual double Size(const Body& body) const;
 
-  // In the order of the card: θ first, the three components of g last. SI.
+  // Parameter values in the order of the card, SI: θ first, the three components of g last.
   Eigen::VectorXd parameters_;
 
  private:

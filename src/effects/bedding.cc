@@ -71,20 +71,21 @@ void AppendBeddedPart(EffectCard* card) {
 
 void BeddedPart::SetParameters(const Eigen::VectorXd& values) {
   CHECK_GT(values.size(), kCount);
-  if (values_ == values.tail<kCount>()) return;
   values_ = values.tail<kCount>();
-  areas_.Forget();
+  areas_.SetSettings(values_);
 }
 
 std::shared_ptr<const Eigen::VectorXd> BeddedPart::Areas(const Body& body,
                                                          const std::string& type) const {
-  return areas_.Of(body, [&](const Body& at_rest) {
+  return areas_.Of(body, [&type](const Body& at_rest, const Eigen::VectorXd& values) {
+    const Eigen::Vector3d point = values.segment<3>(kPoint);
+    const double radius = values[kRadius];
     const Eigen::VectorXd part =
-        FacingAreas(values_.segment<3>(kSide), at_rest)
-            .cwiseProduct(InHalfSpace(Point(), values_.segment<3>(kNormal), at_rest));
+        FacingAreas(values.segment<3>(kSide), at_rest)
+            .cwiseProduct(InHalfSpace(point, values.segment<3>(kNormal), at_rest));
     Eigen::VectorXd areas = part;
-    if (Radius() > 0) areas = areas.cwiseProduct(BumpAround(Point(), Radius(), at_rest));
-    if (areas.sum() == 0 && IsFarFrom(part, Point(), at_rest)) {
+    if (radius > 0) areas = areas.cwiseProduct(BumpAround(point, radius, at_rest));
+    if (areas.sum() == 0 && IsFarFrom(part, point, at_rest)) {
       throw InputError(fmt::format(
           "effect {}: no node of the body's surface lies on the side of its plane that `point` and "
           "`normal` name, on the `side` of the body, or within its radius",

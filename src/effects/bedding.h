@@ -20,9 +20,9 @@ ParameterCard BeddingModulus();
 
 // Appends the place `point` (c, m), the setting `normal`, the `radius` (r, m) and the setting
 // `side`. The half-space is n·(X − c) ≥ 0 of the body at rest; a normal of length zero selects all
-// of the surface. A radius of zero does not fade. `side` is an outward direction: the bed lies
-// against that side of the body (FacingAreas in rest_region.h); of length zero, around the whole
-// girth.
+// of the surface. With a radius of zero the support does not fade. `side` is an outward direction:
+// the bed lies against that side of the body (FacingAreas in rest_region.h); of length zero, around
+// the whole girth.
 void AppendBeddedPart(EffectCard* card);
 
 // The bedded part for an effect whose card ends with these parameters. The areas are computed once

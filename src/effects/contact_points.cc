@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/face_shape_functions.h"
+
 namespace lacuna {
 namespace {
 
@@ -26,27 +28,19 @@ std::vector<ContactPoint> NodesOfBoundary(const Body& body) {
   return points;
 }
 
-// The point with the barycentric coordinates l of a face of six nodes: the corners, then the
-// midpoints of the edges (0, 1), (1, 2) and (2, 0).
-ContactPoint OnQuadraticFace(const Body& body, Eigen::Index face, const Eigen::Vector3d& l,
-                             double weight) {
+// The point with these barycentric coordinates of a face of six nodes.
+ContactPoint OnQuadraticFace(const Body& body, Eigen::Index face,
+                             const Eigen::Vector3d& barycentric, double weight) {
+  const FaceShape<6> shape = QuadraticFaceShape(barycentric);
   ContactPoint point;
   point.count = 6;
-  // Two coordinates of the face are l[1] and l[2], with l[0] = 1 − l[1] − l[2].
-  constexpr double kFirst[3] = {-1, 1, 0}, kSecond[3] = {-1, 0, 1};
+  point.weight = shape.value;
   Eigen::Vector3d first = Eigen::Vector3d::Zero(), second = first;
-  const auto add = [&](int k, double shape, double by_first, double by_second) {
+  for (const int k : {0, 3, 1, 4, 2, 5}) {
     const int node = body.boundary.faces(k, face);
     point.node[static_cast<size_t>(k)] = node;
-    point.weight[k] = shape;
-    first += by_first * body.mesh.nodes.col(node);
-    second += by_second * body.mesh.nodes.col(node);
-  };
-  for (int a = 0; a < 3; ++a) {
-    const int b = (a + 1) % 3;
-    add(a, l[a] * (2 * l[a] - 1), (4 * l[a] - 1) * kFirst[a], (4 * l[a] - 1) * kSecond[a]);
-    add(3 + a, 4 * l[a] * l[b], 4 * (l[a] * kFirst[b] + l[b] * kFirst[a]),
-        4 * (l[a] * kSecond[b] + l[b] * kSecond[a]));
+    first += shape.by_first[k] * body.mesh.nodes.col(node);
+    second += shape.by_second[k] * body.mesh.nodes.col(node);
   }
   point.area = 0.5 * weight * first.cross(second).norm();
   return point;

@@ -106,7 +106,8 @@ class DragEffect final : public CloneableEffect<DragEffect> {
   template <typename Visit>
   void ForEachBoundaryNode(const Kinematics& at, const Visit& visit) const {
     const Eigen::VectorXi& nodes = at.body.boundary.node;
-    const auto areas = areas_.Of(at.body, NodeBoundaryAreas);
+    const auto areas = areas_.Of(
+        at.body, [](const Body& body, const Eigen::VectorXd&) { return NodeBoundaryAreas(body); });
     for (const int node : nodes) visit(node, (*areas)[node], at.velocity.segment<3>(3 * node));
   }
 

@@ -11,18 +11,17 @@
 namespace lacuna {
 namespace {
 
-// "-9.80665 m/s^2"
-std::string FormatQuantity(double value, const Dimension& dimension) {
-  const std::string unit = dimension.unit;
-  return fmt::format("{}{}{}", value, unit.empty() ? "" : " ", unit);
-}
-
 bool CanBeWritten(const Eigen::VectorXd& values, const ParameterCard& parameter) {
   const bool is_direction = values.size() == 3 && parameter.dimension.SameAs(kDimensionless);
   return values.allFinite() && !(is_direction && values.norm() == 0);
 }
 
 }  // namespace
+
+std::string FormatQuantity(double value, const Dimension& dimension) {
+  const std::string unit = dimension.unit;
+  return fmt::format("{}{}{}", value, unit.empty() ? "" : " ", unit);
+}
 
 std::optional<std::string> FormatEffect(const Effect& effect) {
   const EffectCard& card = effect.Card();

@@ -9,6 +9,10 @@
 
 namespace lacuna {
 
+// A value in SI units with its unit, in the shortest form that reads back to the same bits:
+// "-9.80665 m/s^2".
+std::string FormatQuantity(double value, const Dimension& dimension);
+
 // A flow mapping from which MakeEffect(Config), or MakeMaterial for an elasticity law, makes an
 // effect of the same type with bit-identical parameter values:
 //   {type: gravity, acceleration: [0 m/s^2, 0 m/s^2, -9.80665 m/s^2]}

@@ -35,14 +35,12 @@ inline std::vector<ParameterCard> ElasticParameters() {
            .log_scale = false}};
 }
 
-// The same two parameters as settings of an effect, which takes omitted values from the material.
-inline std::vector<ParameterCard> ElasticSettings() {
-  std::vector<ParameterCard> settings = ElasticParameters();
-  for (ParameterCard& setting : settings) {
-    setting.meaning += "; if omitted, that of the material";
-    setting.setting = true;
-  }
-  return settings;
+// Poisson's ratio as a setting of an effect, which takes an omitted value from the material.
+inline ParameterCard PoissonRatioSetting() {
+  ParameterCard ratio = ElasticParameters().back();
+  ratio.meaning += "; if omitted, that of the material";
+  ratio.setting = true;
+  return ratio;
 }
 
 // Young's modulus m (Pa) that a branch adds to the material. `meaning`: the text of its card, which

@@ -24,6 +24,7 @@
 #include "core/parallel.h"
 #include "effects/catalogue.h"
 #include "effects/expression_law.h"
+#include "effects/rest_region.h"
 #include "fem/cloneable_effect.h"
 
 namespace lacuna {
@@ -152,7 +153,7 @@ class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect
       case Measure::kMass:
         return body.node_mass;
       case Measure::kVolume:
-        return body.node_mass / body.density;
+        return NodeVolumes(body);
       case Measure::kArea:
         break;
     }

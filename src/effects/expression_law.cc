@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <cstdint>
 #include <utility>
 
 #include "core/quoted_text.h"
+#include "core/random_bits.h"
+#include "effects/effect_text.h"
 
 namespace lacuna {
 namespace {
@@ -137,17 +139,19 @@ void CheckAmplitude(const Config& config, const Law& law) {
                                   std::abs(amplitude.plausible_min - amplitude.null_value)
                               ? amplitude.plausible_max
                               : amplitude.plausible_min;
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> uniform(-1, 1);
+  // The same on every platform, so that an experiment is accepted on all of them or on none.
+  uint64_t drawn = 0;
+  const auto uniform = [&drawn] { return 2 * Uniform(RandomBits({drawn++})) - 1; };
   bool acts = false, grows = false;
   for (int trial = 0; trial < 200; ++trial) {
     Law::Values<Dual<1>> values;
     const double size = std::pow(10.0, -(trial % 4));
-    for (int k = 0; k < Law::kVariables; ++k) values[k] = Dual<1>::Constant(size * uniform(random));
+    for (int k = 0; k < Law::kVariables; ++k) values[k] = Dual<1>::Constant(size * uniform());
     for (int axis = 0; axis < 3; ++axis)
       values[Law::kDisplacement + axis].value =
           values[Law::kPosition + axis].value - values[Law::kRest + axis].value;
-    Eigen::Vector3d normal(uniform(random), uniform(random), uniform(random));
+    Eigen::Vector3d normal;
+    for (double& component : normal) component = uniform();
     normal.normalize();
     for (int axis = 0; axis < 3; ++axis) values[Law::kNormal + axis].value = normal[axis];
     values[Law::kTime].value = 10 * std::abs(values[Law::kTime].value);
@@ -179,10 +183,7 @@ void CheckAmplitude(const Config& config, const Law& law) {
 }
 
 std::string FormatParameter(const ParameterCard& card, double value) {
-  const std::string unit = card.dimension.unit;
-  const auto quantity = [&](double number) {
-    return fmt::format("{}{}{}", number, unit.empty() ? "" : " ", unit);
-  };
+  const auto quantity = [&](double number) { return FormatQuantity(number, card.dimension); };
   std::string text = "{value: " + quantity(value);
   if (card.setting)
     text += ", setting: true";

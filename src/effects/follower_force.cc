@@ -75,8 +75,8 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
   Eigen::VectorXd Parameters() const override { return parameters_; }
   void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), kParameters);
-    if (parameters_.size() == 0 || parameters_.tail<4>() != values.tail<4>()) spread_.Forget();
     parameters_ = values;
+    spread_.SetSettings(values.tail<4>());
   }
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
@@ -104,7 +104,7 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
       AddTurned(at, *spread, spread->share, Eigen::Vector3d::Unit(parameter), derivative);
     } else {
       AddTurned(at, *spread,
-                BumpSharesByCentre(parameter - kCentre, parameters_[kRadius], spread->place,
+                BumpSharesByCentre(parameter - kCentre, parameters_[kRadius], at.body.point,
                                    spread->share),
                 parameters_.head<3>(), derivative);
     }
@@ -113,7 +113,6 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
  private:
   struct Spread {
     Eigen::MatrixXd shape;   // N_a at the points of an element (nodes × points)
-    Eigen::Matrix3Xd place;  // X_q, m
     Eigen::VectorXd share;   // s_q
     std::vector<char> felt;  // elements: whether any of their points has a share
   };
@@ -153,18 +152,11 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
     return card;
   }
 
-  Spread MakeSpread(const Body& body) const {
-    Spread spread{ShapesAtPoints(body.mesh.Order()), {}, {}, {}};
-    spread.place.setZero(3, body.PointCount());
-    for (int q = 0; q < body.PointCount(); ++q) {
-      const int e = q / body.points_per_element;
-      for (Eigen::Index a = 0; a < body.mesh.tets.rows(); ++a) {
-        spread.place.col(q) += spread.shape(a, q % body.points_per_element) *
-                               body.mesh.nodes.col(body.mesh.tets(a, e));
-      }
-    }
-    spread.share = BumpShares(parameters_.segment<3>(kCentre), parameters_[kRadius], spread.place,
-                              body.weight);
+  // `place`: the centre and the radius.
+  static Spread MakeSpread(const Body& body, const Eigen::VectorXd& place) {
+    Spread spread;
+    spread.shape = ShapesAtPoints(body.mesh.Order());
+    spread.share = BumpShares(place.head<3>(), place[3], body.point, body.weight);
     spread.felt.assign(body.ElementCount(), 0);
     for (int q = 0; q < body.PointCount(); ++q) {
       if (spread.share[q] > 0) spread.felt[q / body.points_per_element] = 1;
@@ -245,7 +237,7 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
   }
 
   std::shared_ptr<const Spread> GetSpread(const Body& body) const {
-    return spread_.Of(body, [this](const Body& at_rest) { return MakeSpread(at_rest); });
+    return spread_.Of(body, &MakeSpread);
   }
 
   Eigen::VectorXd parameters_;  // in the order of the card

@@ -6,6 +6,14 @@
 
 namespace lacuna {
 
+double WeightEnergy(const Kinematics& at, const Eigen::VectorXd& mass,
+                    const Eigen::Vector3d& gravity) {
+  double energy = 0;
+  for (int i = 0; i < at.body.NodeCount(); ++i)
+    energy -= mass[i] * gravity.dot(at.position.segment<3>(3 * i) - at.body.mesh.nodes.col(i));
+  return energy;
+}
+
 bool IsSameGravity(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
   constexpr double kRounding = 1e-9;  // of units other than m/s²
   return (one - other).norm() <= kRounding * other.norm();

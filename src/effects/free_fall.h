@@ -18,6 +18,11 @@ inline constexpr double kStandardGravity = 9.80665;  // m/s², 3rd CGPM, 1901
 // value; in a model without gravity it must be given (ReadParameters in effects/catalogue.h).
 inline constexpr char kGravitySetting[] = "gravity";
 
+// The potential energy of the weight of nodal masses (n, kg), J: −Σ m_i g·(x_i − X_i), which is 0
+// at the rest shape, so that small differences are not lost to rounding. `gravity`: g, m/s².
+double WeightEnergy(const Kinematics& at, const Eigen::VectorXd& mass,
+                    const Eigen::Vector3d& gravity);
+
 // Whether two accelerations of free fall are the same but for the rounding of their units.
 bool IsSameGravity(const Eigen::Vector3d& one, const Eigen::Vector3d& other);
 

@@ -12,17 +12,24 @@ const Effect& FreeStrain::Law(const Kinematics& at) {
 Kinematics FreeStrain::AsSeenByLaw(const Kinematics& at, const Body& body,
                                    const Eigen::VectorXd& position) {
   static const Eigen::VectorXd no_memory;
-  return {body,         position,  at.velocity,   at.acceleration, at.time,
-          at.time_step, no_memory, at.elasticity, at.has_inertia};
+  return {.body = body,
+          .position = position,
+          .velocity = at.velocity,
+          .acceleration = at.acceleration,
+          .time = at.time,
+          .time_step = at.time_step,
+          .state = no_memory,
+          .elasticity = at.elasticity,
+          .has_inertia = at.has_inertia};
 }
 
 void FreeStrain::AddDifference(const Kinematics& at, const AddOfLaw& add,
                                Eigen::VectorXd* result) const {
-  if (IsNone()) return;
+  if (HasNoStrain()) return;
   Eigen::VectorXd of_law = Eigen::VectorXd::Zero(result->size());
   WithElasticPart(at, [&](const ElasticPart& elastic) {
     add(elastic.state, &of_law);
-    *result += elastic.of_force * of_law;
+    *result += elastic.force_factor * of_law;
   });
   of_law.setZero();
   add(AsSeenByLaw(at, at.body, at.position), &of_law);
@@ -47,7 +54,7 @@ void FreeStrain::AddElasticityDerivative(const Kinematics& at, int parameter,
 }
 
 bool FreeStrain::AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const {
-  if (IsNone()) return true;
+  if (HasNoStrain()) return true;
   Eigen::Matrix3Xd of_law = Eigen::Matrix3Xd::Zero(3, stress->cols());
   WithElasticPart(at,
                   [&](const ElasticPart& elastic) { Law(at).AddStress(elastic.state, &of_law); });
@@ -62,21 +69,21 @@ bool FreeStrain::AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const
 
 void FreeStrain::AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                              BlockMatrix* tangent) const {
-  if (IsNone() || weights.position == 0 || convexify) return;
+  if (HasNoStrain() || weights.position == 0 || convexify) return;
   WithElasticPart(at, [&](const ElasticPart& elastic) {
-    Law(at).AddTangents(elastic.state, {.position = weights.position * elastic.of_tangent}, false,
-                        tangent);
+    Law(at).AddTangents(elastic.state, {.position = weights.position * elastic.tangent_factor},
+                        false, tangent);
   });
   Law(at).AddTangents(AsSeenByLaw(at, at.body, at.position), {.position = -weights.position}, false,
                       tangent);
 }
 
 std::optional<double> FreeStrain::Energy(const Kinematics& at) const {
-  if (IsNone()) return 0.0;
+  if (HasNoStrain()) return 0.0;
   std::optional<double> stored;
   WithElasticPart(at, [&](const ElasticPart& elastic) {
     stored = Law(at).Energy(elastic.state);
-    if (stored) *stored *= elastic.of_energy;
+    if (stored) *stored *= elastic.energy_factor;
   });
   const std::optional<double> unstrained = Law(at).Energy(AsSeenByLaw(at, at.body, at.position));
   if (!stored || !unstrained) return std::nullopt;

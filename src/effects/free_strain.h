@@ -1,6 +1,8 @@
-// What effects have in common whose strain is free of the moduli, such as that of a swelling or
-// heated material: they change the state that the elasticity law of the body sees, and add the
-// difference between what the law adds there and what it adds in the actual state,
+// A base class for effects that change the natural (stress-free) shape of the material, such as
+// swelling or thermal expansion. The prescribed strain does not depend on the elastic moduli. Such
+// an effect evaluates the elasticity law of the body in the state that the material would have
+// relative to its new natural shape, the elastic part, and adds the difference from the law in the
+// actual state,
 //   E = e E_el(elastic part) − E_el(x),   f = s f_el(elastic part) − f_el(x),
 //   ∂f/∂x = k K_el(elastic part) − K_el(x),   P = λ² P_el(F/λ) − P_el(F),
 // with the energy E_el, the force f_el, its derivative K_el = ∂f_el/∂x and the first
@@ -19,12 +21,12 @@
 
 namespace lacuna {
 
-// A base class for such effects: theirs are card, parameters, the derivative with respect to the
-// strain, and the following three.
+// A derived class gives the card, the parameters, the derivative with respect to the strain, and
+// the three functions HasNoStrain, WithElasticPart and Stretches.
 class FreeStrain : public Effect {
  public:
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const final;
-  // With `convexify` nothing: the law's own approximation stands for both.
+  // Adds nothing with `convexify`: the law's own approximation stands for both.
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const final;
   void AddElasticityDerivative(const Kinematics& at, int parameter,
@@ -34,14 +36,14 @@ class FreeStrain : public Effect {
 
  protected:
   struct ElasticPart {
-    const Kinematics& state;  // as the law sees it
-    double of_force = 1;      // s, also of the derivatives with respect to the law's parameters
-    double of_tangent = 1;    // k
-    double of_energy = 1;     // e
+    const Kinematics& state;    // as the law sees it
+    double force_factor = 1;    // s, also of the derivatives with respect to the law's parameters
+    double tangent_factor = 1;  // k
+    double energy_factor = 1;   // e
   };
 
   // Whether the effect adds nothing, because its strain is zero everywhere.
-  virtual bool IsNone() const = 0;
+  virtual bool HasNoStrain() const = 0;
   // Calls `use` once with the elastic part of the state, which lives as long as the call.
   virtual void WithElasticPart(const Kinematics& at,
                                const std::function<void(const ElasticPart&)>& use) const = 0;

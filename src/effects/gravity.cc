@@ -42,14 +42,8 @@ class GravityEffect final : public CloneableEffect<GravityEffect> {
     }
   }
 
-  // Zero at the rest shape, so that small differences are not lost to rounding.
   std::optional<double> Energy(const Kinematics& at) const override {
-    double energy = 0;
-    for (int i = 0; i < at.body.NodeCount(); ++i) {
-      energy -= at.body.node_mass[i] *
-                acceleration_.dot(at.position.segment<3>(3 * i) - at.body.mesh.nodes.col(i));
-    }
-    return energy;
+    return WeightEnergy(at, at.body.node_mass, acceleration_);
   }
 
  private:
@@ -104,8 +98,7 @@ std::shared_ptr<const Effect> MakeGravity(const Eigen::Vector3d& acceleration) {
   return std::make_shared<GravityEffect>(acceleration);
 }
 
-std::optional<Eigen::Vector3d> GravityOf(
-    const std::vector<std::shared_ptr<const Effect>>& effects) {
+std::optional<Eigen::Vector3d> GravityOf(const EffectList& effects) {
   for (const auto& effect : effects)
     if (IsGravity(*effect)) return effect->Parameters().head<3>();
   return std::nullopt;

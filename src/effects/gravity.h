@@ -8,10 +8,9 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "effects/free_fall.h"
-#include "fem/effect.h"
+#include "fem/model.h"
 
 namespace lacuna {
 
@@ -23,7 +22,7 @@ std::shared_ptr<const Effect> MakeGravity(const Eigen::Vector3d& acceleration);
 
 // The acceleration of free fall g, m/s², of a model with these effects; nothing for a model without
 // gravity. A model contains gravity once at most: it is not repeatable.
-std::optional<Eigen::Vector3d> GravityOf(const std::vector<std::shared_ptr<const Effect>>& effects);
+std::optional<Eigen::Vector3d> GravityOf(const EffectList& effects);
 
 }  // namespace lacuna
 

@@ -79,7 +79,7 @@ class BumpWeight {
                                .default_value = kMustBeGiven,
                                .log_scale = true,
                                .trial = {.share_of_length = 0.15}});
-    card.parameters.push_back(ElasticSettings()[1]);
+    card.parameters.push_back(PoissonRatioSetting());
     return card;
   }
 

@@ -1,8 +1,7 @@
-#include "effects/neo_hookean.h"
-
 #include "effects/catalogue.h"
 #include "effects/elastic_parameters.h"
 #include "effects/neo_hookean_energy.h"
+#include "effects/standard_cards.h"
 #include "fem/elastic_solid.h"
 
 namespace lacuna {

@@ -239,7 +239,8 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
 
   template <typename Visit>
   void ForEachContact(const Kinematics& at, const Visit& visit) const {
-    const auto points = points_.Of(at.body, ContactPoints);
+    const auto points = points_.Of(
+        at.body, [](const Body& body, const Eigen::VectorXd&) { return ContactPoints(body); });
     for (const ContactPoint& point : *points) {
       const double depth = parameters_[kOffset] - normal_.dot(point.At(at.position));
       if (depth <= 0) continue;
@@ -335,7 +336,7 @@ std::optional<ContactPlane> ContactPlaneOf(const Effect& effect) {
                       .friction = values[PlaneContactEffect::kFriction]};
 }
 
-const Effect* FindPlaneContact(const std::vector<std::shared_ptr<const Effect>>& effects) {
+const Effect* FindPlaneContact(const EffectList& effects) {
   for (const auto& effect : effects)
     if (&effect->Card() == &PlaneContactCard()) return effect.get();
   return nullptr;

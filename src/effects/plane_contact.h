@@ -9,9 +9,8 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
-#include <vector>
 
-#include "fem/effect.h"
+#include "fem/model.h"
 
 namespace lacuna {
 
@@ -31,7 +30,7 @@ std::shared_ptr<const Effect> MakePlaneContact(const ContactPlane& plane);
 std::optional<ContactPlane> ContactPlaneOf(const Effect& effect);
 
 // The first contact among these effects, owned by them; null if there is none.
-const Effect* FindPlaneContact(const std::vector<std::shared_ptr<const Effect>>& effects);
+const Effect* FindPlaneContact(const EffectList& effects);
 
 }  // namespace lacuna
 

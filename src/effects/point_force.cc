@@ -38,10 +38,8 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
   Eigen::VectorXd Parameters() const override { return parameters_; }
   void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), kParameters);
-    if (parameters_.size() == 0 || parameters_.segment<4>(kCentre) != values.segment<4>(kCentre)) {
-      shares_.Forget();
-    }
     parameters_ = values;
+    shares_.SetSettings(values.segment<4>(kCentre));
   }
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
@@ -123,9 +121,8 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
   }
 
   std::shared_ptr<const Eigen::VectorXd> Shares(const Body& body) const {
-    return shares_.Of(body, [this](const Body& at_rest) {
-      return BumpShares(parameters_.segment<3>(kCentre), parameters_[kRadius], at_rest.mesh.nodes,
-                        NodeBoundaryAreas(at_rest));
+    return shares_.Of(body, [](const Body& at_rest, const Eigen::VectorXd& place) {
+      return BumpShares(place.head<3>(), place[3], at_rest.mesh.nodes, NodeBoundaryAreas(at_rest));
     });
   }
 

@@ -26,41 +26,30 @@
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
 #include "fem/cloneable_effect.h"
+#include "geometry/face_shape_functions.h"
 
 namespace lacuna {
 namespace {
 
-// Shape functions of a face of kNodes nodes (three corners, then the midpoints of the edges (0,1)
-// (1,2) (2,0)) at a quadrature point of the triangle 0 ≤ ξ, η, ξ + η ≤ 1.
+// A point of the quadrature over the coordinates 0 ≤ ξ, η, ξ + η ≤ 1 of a face.
 template <int kNodes>
-struct FacePoint {
-  double weight;                         // sums to ½
-  Eigen::Vector<double, kNodes> shape;   // N
-  Eigen::Vector<double, kNodes> by_xi;   // ∂N/∂ξ
-  Eigen::Vector<double, kNodes> by_eta;  // ∂N/∂η
+struct QuadraturePoint {
+  double weight;  // sums to ½
+  FaceShape<kNodes> shape;
 };
 
-FacePoint<3> LinearPoint(double weight, double xi, double eta) {
-  return {weight, {1 - xi - eta, xi, eta}, {-1, 1, 0}, {-1, 0, 1}};
-}
-
-FacePoint<6> QuadraticPoint(double weight, double xi, double eta) {
-  const double zeta = 1 - xi - eta;
-  FacePoint<6> point{weight, {}, {}, {}};
-  point.shape << zeta * (2 * zeta - 1), xi * (2 * xi - 1), eta * (2 * eta - 1), 4 * zeta * xi,
-      4 * xi * eta, 4 * eta * zeta;
-  point.by_xi << 1 - 4 * zeta, 4 * xi - 1, 0, 4 * (zeta - xi), 4 * eta, -4 * eta;
-  point.by_eta << 1 - 4 * zeta, 0, 4 * eta - 1, -4 * xi, 4 * xi, 4 * (zeta - eta);
-  return point;
+QuadraturePoint<6> QuadraticPoint(double weight, double xi, double eta) {
+  return {weight, QuadraticFaceShape({1 - xi - eta, xi, eta})};
 }
 
 template <int kNodes>
 const auto& FaceRule() {
   if constexpr (kNodes == 3) {
-    static const std::array<FacePoint<3>, 1> rule{LinearPoint(0.5, 1.0 / 3, 1.0 / 3)};
+    static const std::array<QuadraturePoint<3>, 1> rule{
+        {{0.5, LinearFaceShape({1 - 1.0 / 3 - 1.0 / 3, 1.0 / 3, 1.0 / 3})}}};
     return rule;
   } else {
-    static const std::array<FacePoint<6>, 6> rule = [] {
+    static const std::array<QuadraturePoint<6>, 6> rule = [] {
       constexpr double kNear = 0.44594849091596489, kNearWeight = 0.22338158967801147 / 2;
       constexpr double kFar = 0.091576213509770743, kFarWeight = 0.10995174365532187 / 2;
       return std::array{QuadraticPoint(kNearWeight, kNear, kNear),
@@ -104,11 +93,8 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
   Eigen::VectorXd Parameters() const override { return parameters_; }
   void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), kParameters);
-    if (parameters_.size() == 0 ||
-        parameters_.tail(kParameters - 1) != values.tail(kParameters - 1)) {
-      faces_.Forget();
-    }
     parameters_ = values;
+    faces_.SetSettings(values.tail<kParameters - kPoint>());
   }
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
@@ -195,12 +181,12 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
   }
 
   std::shared_ptr<const PressedFaces> Faces(const Body& body) const {
-    return faces_.Of(body, [this](const Body& at_rest) { return ChooseFaces(at_rest); });
+    return faces_.Of(body, &ChooseFaces);
   }
 
-  PressedFaces ChooseFaces(const Body& body) const {
-    const Eigen::VectorXd inside =
-        InHalfSpace(parameters_.segment<3>(kPoint), parameters_.segment<3>(kNormal), body);
+  // `plane`: the point and the normal.
+  static PressedFaces ChooseFaces(const Body& body, const Eigen::VectorXd& plane) {
+    const Eigen::VectorXd inside = InHalfSpace(plane.head<3>(), plane.tail<3>(), body);
     const Eigen::MatrixXi& all = body.boundary.faces;
     std::vector<Eigen::Index> chosen;
     for (Eigen::Index f = 0; f < all.cols(); ++f) {
@@ -232,9 +218,9 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
       for (int a = 0; a < kNodes; ++a) x.col(a) = position.segment<3>(3 * faces.nodes(a, f));
       // Differences keep the tangents exact far from the origin.
       const Eigen::Matrix<double, 3, kNodes> edges = x.colwise() - Eigen::Vector3d(x.col(0));
-      for (const FacePoint<kNodes>& point : FaceRule<kNodes>()) {
-        visit(f, point, x, Eigen::Vector3d(edges * point.by_xi),
-              Eigen::Vector3d(edges * point.by_eta));
+      for (const QuadraturePoint<kNodes>& point : FaceRule<kNodes>()) {
+        visit(f, point, x, Eigen::Vector3d(edges * point.shape.by_first),
+              Eigen::Vector3d(edges * point.shape.by_second));
       }
     }
   }
@@ -247,14 +233,15 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
   template <int kNodes>
   void AddLoad(const Kinematics& at, double pressure, Eigen::VectorXd* force) const {
     const auto faces = Faces(at.body);
-    ForEachPoint<kNodes>(*faces, at.position,
-                         [&](Eigen::Index f, const FacePoint<kNodes>& point, const auto& /*x*/,
-                             const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
-                           const Eigen::Vector3d load = -pressure * point.weight * t1.cross(t2);
-                           for (int a = 0; a < kNodes; ++a) {
-                             force->segment<3>(3 * faces->nodes(a, f)) += point.shape[a] * load;
-                           }
-                         });
+    ForEachPoint<kNodes>(
+        *faces, at.position,
+        [&](Eigen::Index f, const QuadraturePoint<kNodes>& point, const auto& /*x*/,
+            const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
+          const Eigen::Vector3d load = -pressure * point.weight * t1.cross(t2);
+          for (int a = 0; a < kNodes; ++a) {
+            force->segment<3>(3 * faces->nodes(a, f)) += point.shape.value[a] * load;
+          }
+        });
   }
 
   // The symmetric part of the tangent, or with kMirror = −1 the skew-symmetric one.
@@ -268,23 +255,24 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
   template <int kMirror, int kNodes>
   void AddStiffness(const Kinematics& at, double scale, BlockMatrix* tangent) const {
     const auto faces = Faces(at.body);
-    ForEachPoint<kNodes>(*faces, at.position,
-                         [&](Eigen::Index f, const FacePoint<kNodes>& point, const auto& /*x*/,
-                             const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
-                           const Eigen::Matrix<double, 3, kNodes> s =
-                               t1 * point.by_eta.transpose() - t2 * point.by_xi.transpose();
-                           const int* block = &faces->block[f * kNodes * kNodes];
-                           for (int a = 0; a < kNodes; ++a) {
-                             for (int b = 0; b < kNodes; ++b) {
-                               const Eigen::Vector3d c = -0.5 * scale * point.weight *
-                                                         (point.shape[a] * s.col(b) -
-                                                          kMirror * point.shape[b] * s.col(a));
-                               Eigen::Matrix3d cross;
-                               cross << 0, -c[2], c[1], c[2], 0, -c[0], -c[1], c[0], 0;
-                               tangent->Block(block[a * kNodes + b]) += cross;
-                             }
-                           }
-                         });
+    ForEachPoint<kNodes>(
+        *faces, at.position,
+        [&](Eigen::Index f, const QuadraturePoint<kNodes>& point, const auto& /*x*/,
+            const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
+          const Eigen::Matrix<double, 3, kNodes> s =
+              t1 * point.shape.by_second.transpose() - t2 * point.shape.by_first.transpose();
+          const int* block = &faces->block[f * kNodes * kNodes];
+          for (int a = 0; a < kNodes; ++a) {
+            for (int b = 0; b < kNodes; ++b) {
+              const Eigen::Vector3d c =
+                  -0.5 * scale * point.weight *
+                  (point.shape.value[a] * s.col(b) - kMirror * point.shape.value[b] * s.col(a));
+              Eigen::Matrix3d cross;
+              cross << 0, -c[2], c[1], c[2], 0, -c[0], -c[1], c[0], 0;
+              tangent->Block(block[a * kNodes + b]) += cross;
+            }
+          }
+        });
   }
 
   // The volume enclosed by the surface, ⅓ ∫ (x − a) · n dA, with a point a nearby.
@@ -293,9 +281,10 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
     const Eigen::Vector3d apex = position.head<3>();
     double volume = 0;
     ForEachPoint<kNodes>(*Faces(body), position,
-                         [&](Eigen::Index /*f*/, const FacePoint<kNodes>& point, const auto& x,
-                             const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
-                           volume += point.weight / 3 * (x * point.shape - apex).dot(t1.cross(t2));
+                         [&](Eigen::Index /*f*/, const QuadraturePoint<kNodes>& point,
+                             const auto& x, const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
+                           volume +=
+                               point.weight / 3 * (x * point.shape.value - apex).dot(t1.cross(t2));
                          });
     return volume;
   }

@@ -1,11 +1,10 @@
-#include "effects/stiffness_damping.h"
-
 #include <glog/logging.h>
 
 #include <string>
 
 #include "effects/catalogue.h"
 #include "effects/elastic_parameters.h"
+#include "effects/standard_cards.h"
 #include "fem/cloneable_effect.h"
 #include "fem/element_kinematics.h"
 #include "fem/lame_constants.h"

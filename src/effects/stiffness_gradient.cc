@@ -73,7 +73,7 @@ class LinearWeight {
                                .default_value = 0.1,
                                .setting = true,
                                .trial = {.share_of_length = 1}});
-    card.parameters.push_back(ElasticSettings()[1]);
+    card.parameters.push_back(PoissonRatioSetting());
     return card;
   }
 

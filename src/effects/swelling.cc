@@ -50,7 +50,7 @@ class SwellingEffect final : public CloneableEffect<SwellingEffect, FreeStrain> 
   }
 
  private:
-  bool IsNone() const override { return strain_ == 0; }
+  bool HasNoStrain() const override { return strain_ == 0; }
 
   void WithElasticPart(const Kinematics& at,
                        const std::function<void(const ElasticPart&)>& use) const override {

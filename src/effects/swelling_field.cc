@@ -75,7 +75,9 @@ const EffectCard& TheCard() {
 class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect, FreeStrain> {
  public:
   SwellingFieldEffect(double strain, Expression field)
-      : strain_(strain), field_(std::make_shared<const Expression>(std::move(field))) {}
+      : field_(std::make_shared<const Expression>(std::move(field))) {
+    SetParameters(Eigen::VectorXd::Constant(1, strain));
+  }
 
   const Expression& Field() const { return *field_; }
   const EffectCard& Card() const override { return TheCard(); }
@@ -83,7 +85,7 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect, Fr
   void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), 1);
     strain_ = values[0];
-    swollen_.Forget();
+    swollen_.SetSettings(values);
   }
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
@@ -96,7 +98,7 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect, Fr
   }
 
  private:
-  bool IsNone() const override { return strain_ == 0; }
+  bool HasNoStrain() const override { return strain_ == 0; }
 
   void WithElasticPart(const Kinematics& at,
                        const std::function<void(const ElasticPart&)>& use) const override {
@@ -106,7 +108,7 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect, Fr
 
   // g at the quadrature points.
   std::shared_ptr<const Eigen::VectorXd> FieldAtPoints(const Body& body) const {
-    return at_points_.Of(body, [this](const Body& rest) {
+    return at_points_.Of(body, [this](const Body& rest, const Eigen::VectorXd& /*settings*/) {
       Eigen::VectorXd values(rest.PointCount());
       for (Eigen::Index q = 0; q < values.size(); ++q) {
         const Eigen::Vector3d point = rest.point.col(q);
@@ -146,8 +148,9 @@ class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect, Fr
   }
 
   std::shared_ptr<const Body> Swollen(const Body& body) const {
-    return swollen_.Of(body,
-                       [this](const Body& rest) { return MakeSwollen(rest, Stretches(rest)); });
+    return swollen_.Of(body, [this](const Body& rest, const Eigen::VectorXd& /*strain*/) {
+      return MakeSwollen(rest, Stretches(rest));
+    });
   }
 
   double strain_ = 0;                        // ε₀

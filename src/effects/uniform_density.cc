@@ -66,16 +66,15 @@ bool IsUniformDensity(const Effect& effect) {
   return &effect.Card() == &UniformDensityEffect::TheCard();
 }
 
-double DensityWith(const std::vector<std::shared_ptr<const Effect>>& effects, double made_with) {
+double DensityWith(const EffectList& effects, double made_with) {
   for (const auto& effect : effects)
     if (IsUniformDensity(*effect)) return effect->Parameters()[0];
   return made_with;
 }
 
-std::vector<std::shared_ptr<const Effect>> WithDensityInBody(
-    const std::vector<std::shared_ptr<const Effect>>& effects, double made_with) {
+EffectList WithDensityInBody(const EffectList& effects, double made_with) {
   const double ratio = made_with / DensityWith(effects, made_with);
-  std::vector<std::shared_ptr<const Effect>> others;
+  EffectList others;
   for (const auto& effect : effects) {
     if (IsUniformDensity(*effect)) continue;
     const bool is_mass_damping = &effect->Card() == &MassDampingCard();

@@ -12,9 +12,8 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <vector>
 
-#include "fem/effect.h"
+#include "fem/model.h"
 
 namespace lacuna {
 
@@ -26,13 +25,12 @@ bool IsUniformDensity(const Effect& effect);
 
 // The density, kg/m³, that these effects give to a body that was made with the density `made_with`:
 // ρ of this effect, or `made_with` without it.
-double DensityWith(const std::vector<std::shared_ptr<const Effect>>& effects, double made_with);
+double DensityWith(const EffectList& effects, double made_with);
 
 // The effects in their order for a body that is made with DensityWith(): without this effect, and
 // with α ρ₀/ρ for mass-proportional damping, whose force is thus the same. A force that an
 // expression gives per mass is not changed.
-std::vector<std::shared_ptr<const Effect>> WithDensityInBody(
-    const std::vector<std::shared_ptr<const Effect>>& effects, double made_with);
+EffectList WithDensityInBody(const EffectList& effects, double made_with);
 
 }  // namespace lacuna
 

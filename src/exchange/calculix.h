@@ -39,7 +39,7 @@ struct DisplacementDifference {
   // Relative differences mean nothing otherwise.
   bool IsDisplaced(double size) const { return largest_displacement > 1e-9 * size; }
 };
-// Both 3n × times, m; of the same size (CHECK).
+// The arguments are 3n × times, m, and of the same size (CHECK).
 DisplacementDifference CompareDisplacements(const Eigen::MatrixXd& expected,
                                             const Eigen::MatrixXd& found);
 

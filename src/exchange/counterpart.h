@@ -27,13 +27,13 @@ Counterparts Missing(const Counterparts& counterparts);
 std::vector<std::string> CounterpartLines(const Counterparts& counterparts);
 // A text of the user's for one line of a comment: control characters become spaces.
 std::string CommentText(std::string text);
-// The same for XML, where two hyphens would end the comment.
+// CommentText() for XML, where two hyphens would end the comment.
 std::string XmlCommentText(const std::string& text);
 // The comment at the top of a file: where the model comes from, its units, its parameters and what
 // becomes of its parts, in lines of at most 100 characters with `prefix` in front of each.
 std::string FileComment(const PortableModel& model, const Counterparts& counterparts,
                         const std::string& prefix);
-// The same as a comment of an XML file.
+// FileComment() as a comment of an XML file.
 std::string XmlComment(const PortableModel& model, const Counterparts& counterparts);
 
 }  // namespace lacuna

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "core/error.h"
+#include "core/parsed_word.h"
 #include "core/text_file.h"
 
 namespace lacuna {
@@ -130,23 +130,20 @@ double InpLines::Number(size_t k, const char* what) const {
   // Fortran's exponent.
   std::replace_if(
       word.begin(), word.end(), [](char c) { return c == 'd' || c == 'D'; }, 'e');
-  const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
-  double value = 0;
-  const auto [end, error] = std::from_chars(begin, word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
+  const auto value = ParseSignedWord<double>(word);
+  if (!value || !std::isfinite(*value))
     Fail(fmt::format("got \"{}\"; expected {}, a finite number", fields_[k], what));
-  return value;
+  return *value;
 }
 
 int InpLines::Label(size_t k, const char* what) const {
   if (k >= fields_.size()) Fail(fmt::format("the line ends where {} should follow", what));
   const std::string_view word = fields_[k];
-  int value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || value < 1)
+  const auto value = ParseWord<int>(word);
+  if (!value || *value < 1)
     Fail(fmt::format("got \"{}\"; expected {}, a whole number from 1 to {}", word, what,
                      std::numeric_limits<int>::max()));
-  return value;
+  return *value;
 }
 
 void InpLines::Fail(const std::string& message) const {

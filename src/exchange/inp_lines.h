@@ -30,9 +30,10 @@ class InpLines {
 
   bool IsKeyword() const { return is_keyword_; }
   const std::string& Keyword() const { return keyword_; }  // "ELEMENT", of the last keyword line
-  // The value of a parameter of that keyword line, "" where it has none; null where it is absent.
+  // The value of a parameter of the last keyword line, "" where it has none; null where it is
+  // absent.
   const std::string* Parameter(const std::string& name) const;
-  // The same, but the parameter must be there and have a value.
+  // Parameter() for one that must be there and have a value. Throws InputError otherwise.
   const std::string& RequiredParameter(const std::string& name) const;
   // Refuses a parameter of that keyword line that is not among `known`.
   void RefuseParametersBut(const std::set<std::string>& known) const;

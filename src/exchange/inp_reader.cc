@@ -4,21 +4,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
+#include <optional>
 #include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include "core/error.h"
+#include "exchange/inp_labels.h"
 #include "exchange/inp_lines.h"
 #include "geometry/tet_soup.h"
 
 namespace lacuna {
 namespace {
-
-// Entries of all sets together. A short file could otherwise name a large set so often that its
-// copies fill the memory; no model that can be computed comes near.
-constexpr size_t kMostEntries = 30'000'000;
 
 class Reader {
  public:
@@ -32,9 +30,6 @@ class Reader {
   }
 
  private:
-  using Numbers = std::map<int, int>;                 // label → index in the file
-  using Sets = std::map<std::string, std::set<int>>;  // of labels
-
   // Each reads from a keyword line up to the next one and returns whether there is one.
   bool ReadBlock() {
     const std::string keyword = lines_.Keyword();
@@ -43,8 +38,8 @@ class Reader {
           "*{} with INPUT is not read: put the content of that file in its place", keyword));
     if (keyword == "NODE") return ReadNodes();
     if (keyword == "ELEMENT") return ReadElements();
-    if (keyword == "NSET") return ReadSet("NSET", nodes_, &node_sets_, &node_set_order_);
-    if (keyword == "ELSET") return ReadSet("ELSET", elements_, &element_sets_, &element_set_order_);
+    if (keyword == "NSET") return ReadSet("NSET", &nodes_);
+    if (keyword == "ELSET") return ReadSet("ELSET", &elements_);
     if (keyword == "MATERIAL") return ReadMaterial();
     if (keyword == "ELASTIC" || keyword == "DENSITY") return ReadProperty(keyword == "ELASTIC");
     if (keyword == "SOLID SECTION") return ReadSection();
@@ -98,27 +93,19 @@ class Reader {
     return has_next_;
   }
 
-  std::set<int>* SetOf(const char* parameter, Sets* sets, std::vector<std::string>* order) {
+  // The set that a parameter of the keyword line names; null: it names none.
+  InpLabels::Set* SetOf(const char* parameter, InpLabels* labels) {
     const std::string* name = lines_.Parameter(parameter);
-    if (name == nullptr || name->empty()) return nullptr;
-    const auto [set, is_new] = sets->try_emplace(*name);
-    if (is_new) order->push_back(*name);
-    return &set->second;
-  }
-
-  void CountEntries(size_t count) {
-    entries_ += count;
-    if (entries_ > kMostEntries)
-      lines_.Fail(fmt::format("the sets up to here have more than {} entries", kMostEntries));
+    return name == nullptr || name->empty() ? nullptr : labels->SetNamed(*name);
   }
 
   bool ReadNodes() {
     if (const std::string* system = lines_.Parameter("SYSTEM"); system != nullptr && *system != "R")
       lines_.Fail(fmt::format("only Cartesian coordinates are read, not SYSTEM={}", *system));
-    std::set<int>* set = SetOf("NSET", &node_sets_, &node_set_order_);
+    InpLabels::Set* set = SetOf("NSET", &nodes_);
     while (NextData()) {
       const int label = lines_.Label(0, "the number of a node");
-      if (!nodes_.emplace(label, static_cast<int>(soup_.nodes.size())).second)
+      if (!nodes_.Add(label, static_cast<int>(soup_.nodes.size())))
         lines_.Fail(fmt::format("node {} appears a second time", label));
       node_labels_.push_back(label);
       soup_.nodes.emplace_back(lines_.Number(1, "x"), lines_.Number(2, "y"), lines_.Number(3, "z"));
@@ -149,7 +136,7 @@ class Reader {
   bool SkipElements(const std::string& type) {
     const int line = lines_.KeywordLine();
     NotRead();
-    skips_elements_ = true;
+    elements_.AllowUnknown();
     skipped_types_.insert(type);
     long long count = 0;
     for (bool continues = false; NextData(); continues = lines_.EndsWithComma())
@@ -166,10 +153,10 @@ class Reader {
       variants_.insert(fmt::format(
           "elements of type {} are read as {}: Lacuna has no hybrid or modified tetrahedra", type,
           plain));
-    std::set<int>* set = SetOf("ELSET", &element_sets_, &element_set_order_);
+    InpLabels::Set* set = SetOf("ELSET", &elements_);
     while (NextData()) {
       const int line = lines_.Line(), label = lines_.Label(0, "the number of an element");
-      if (!elements_.emplace(label, static_cast<int>(soup_.tets.size())).second)
+      if (!elements_.Add(label, static_cast<int>(soup_.tets.size())))
         lines_.Fail(fmt::format("element {} appears a second time", label));
       std::vector<int> tet;
       size_t at = 1;
@@ -192,92 +179,47 @@ class Reader {
 
   int NodeAt(size_t field) {
     const int label = lines_.Label(field, "the number of a node");
-    const auto found = nodes_.find(label);
-    if (found == nodes_.end()) lines_.Fail(fmt::format("there is no node {}", label));
-    return found->second;
+    const std::optional<int> found = nodes_.IndexOf(label);
+    if (!found) lines_.Fail(fmt::format("there is no node {}", label));
+    return *found;
   }
 
-  bool ReadSet(const char* parameter, const Numbers& numbers, Sets* sets,
-               std::vector<std::string>* order) {
+  bool ReadSet(const char* parameter, InpLabels* labels) {
     lines_.RequiredParameter(parameter);
     // A set of an instance is read like any other, because the numbers in the file are unique, and
     // the order of UNSORTED is lost. INTERNAL hides a set from the user of Abaqus.
     std::set<std::string> known = {parameter, "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED"};
-    const bool is_of_nodes = sets == &node_sets_;
+    const bool is_of_nodes = labels == &nodes_;
     if (is_of_nodes) known.insert("ELSET");
     lines_.RefuseParametersBut(known);
     const bool generates = lines_.Parameter("GENERATE") != nullptr;
-    std::set<int>* set = SetOf(parameter, sets, order);
+    InpLabels::Set* set = SetOf(parameter, labels);
     if (is_of_nodes && lines_.Parameter("ELSET") != nullptr) return ReadNodesOfElements(set);
     while (NextData()) {
-      if (generates) {
-        AddRange(numbers, set);
-        continue;
-      }
-      for (size_t k = 0; k < lines_.Fields().size(); ++k) {
-        if (lines_.Fields()[k].empty()) continue;
-        const auto other = sets->find(InpName(lines_.Fields()[k]));
-        if (other != sets->end()) {
-          CountEntries(other->second.size());
-          if (&other->second != set) set->insert(other->second.begin(), other->second.end());
-          continue;
-        }
-        const int label = lines_.Label(k, "a number or the name of a set above");
-        CountEntries(1);
-        if (numbers.contains(label))
-          set->insert(label);
-        else if (!MayBeSkipped(numbers))
-          lines_.Fail(fmt::format("there is no number {}", label));
-      }
+      if (generates)
+        labels->AddRange(lines_, set);
+      else
+        labels->AddLine(lines_, set);
     }
     return has_next_;
   }
 
   // *NSET, NSET=A, ELSET=B: the nodes of the elements of B.
-  bool ReadNodesOfElements(std::set<int>* set) {
+  bool ReadNodesOfElements(InpLabels::Set* set) {
     const std::string& name = lines_.RequiredParameter("ELSET");
-    if (const auto elements = element_sets_.find(name); elements != element_sets_.end()) {
-      for (const int label : elements->second) {
-        const auto tet = static_cast<size_t>(elements_.at(label));
+    if (const InpLabels::Set* elements = elements_.FindSet(name); elements != nullptr) {
+      for (const int label : *elements) {
+        const auto tet = static_cast<size_t>(*elements_.IndexOf(label));
         const auto size = static_cast<size_t>(soup_.sizes[tet]);
-        CountEntries(size);
+        entries_.Add(size, lines_);
         for (size_t k = 0; k < size; ++k)
           set->insert(node_labels_[static_cast<size_t>(soup_.tets[tet][k])]);
       }
-    } else if (!skips_elements_) {
+    } else if (!elements_.AllowsUnknown()) {
       lines_.Fail(fmt::format("there is no element set {} above", name));
     }
     if (NextData()) lines_.Fail("expected a keyword line: the nodes are those of the element set");
     return has_next_;
-  }
-
-  // Whether an unknown number may be that of an element of a type that is not read.
-  bool MayBeSkipped(const Numbers& numbers) const {
-    return &numbers == &elements_ && skips_elements_;
-  }
-
-  // first, last, step: all of these numbers must exist.
-  void AddRange(const Numbers& numbers, std::set<int>* set) {
-    const long long first = lines_.Label(0, "the first number");
-    const long long last = lines_.Label(1, "the last number");
-    const long long step = lines_.Fields().size() > 2 ? lines_.Label(2, "the step") : 1;
-    if (last < first) lines_.Fail("the last number is smaller than the first");
-    long long found = 0;
-    for (auto at = numbers.lower_bound(static_cast<int>(first));
-         at != numbers.end() && at->first <= last;) {
-      CountEntries(1);
-      if (const long long beyond = (at->first - first) % step; beyond != 0) {
-        const long long next = at->first + step - beyond;
-        at = next > last ? numbers.end() : numbers.lower_bound(static_cast<int>(next));
-        continue;
-      }
-      ++found;
-      set->insert(at->first);
-      ++at;
-    }
-    if (const long long wanted = (last - first) / step + 1;
-        found != wanted && !MayBeSkipped(numbers))
-      lines_.Fail(fmt::format("{} of the {} numbers do not exist", wanted - found, wanted));
   }
 
   bool ReadMaterial() {
@@ -317,43 +259,18 @@ class Reader {
     return has_next_;
   }
 
-  // Sets of labels as sets of indices of the mesh, where `kept` maps indices in the file to those
-  // in the mesh, or −1.
-  std::vector<NamedNodes> SetsOf(const Sets& sets, const std::vector<std::string>& order,
-                                 const Numbers& numbers, const std::vector<int>& kept) {
-    std::vector<NamedNodes> named;
-    for (const std::string& name : order) {
-      NamedNodes set{name, {}};
-      size_t dropped = 0;
-      for (const int label : sets.at(name)) {
-        const int index = kept[static_cast<size_t>(numbers.at(label))];
-        if (index >= 0) set.nodes.push_back(index);
-        dropped += index < 0;
-      }
-      std::sort(set.nodes.begin(), set.nodes.end());
-      if (dropped > 0)
-        model_.notes.push_back(fmt::format(
-            "set {}: {} of its nodes belong to no tetrahedron and were dropped", name, dropped));
-      if (set.nodes.empty())
-        model_.notes.push_back(fmt::format("set {}: it is empty and was left out", name));
-      else
-        named.push_back(std::move(set));
-    }
-    return named;
-  }
-
   // How many elements each material has. Sections of sets or materials that the file does not have
   // are not read.
   void AssignMaterials() {
     for (const Section& section : sections_) {
-      const auto elements = element_sets_.find(section.elements);
+      const InpLabels::Set* elements = elements_.FindSet(section.elements);
       const auto material =
           std::find_if(model_.materials.begin(), model_.materials.end(),
                        [&](const ImportedMaterial& one) { return one.name == section.material; });
-      if (elements == element_sets_.end() || material == model_.materials.end())
+      if (elements == nullptr || material == model_.materials.end())
         model_.not_read.push_back(section.line);
       else
-        material->element_count += elements->second.size();
+        material->element_count += elements->size();
     }
   }
 
@@ -373,18 +290,18 @@ class Reader {
     for (Eigen::Index n = 0; n < read.node_in_file.size(); ++n)
       kept[static_cast<size_t>(read.node_in_file[n])] = static_cast<int>(n);
     for (size_t e = 0; e < all.size(); ++e) all[e] = static_cast<int>(e);
-    model_.node_sets = SetsOf(node_sets_, node_set_order_, nodes_, kept);
-    model_.element_sets = SetsOf(element_sets_, element_set_order_, elements_, all);
+    model_.node_sets = nodes_.SetsInMesh(kept, &model_.notes);
+    model_.element_sets = elements_.SetsInMesh(all, &model_.notes);
     model_.mesh = std::move(read.mesh);
     return std::move(model_);
   }
 
   std::filesystem::path file_;
   InpLines lines_;
-  bool has_next_ = false, skips_elements_ = false;
-  size_t entries_ = 0;  // of all sets, those that repeat included
+  bool has_next_ = false;
   TetSoup soup_;
-  Numbers nodes_, elements_;
+  InpEntries entries_;
+  InpLabels nodes_{&entries_}, elements_{&entries_};
   std::vector<int> node_labels_;  // in the order of soup_.nodes
   struct Section {
     std::string elements, material;
@@ -392,8 +309,6 @@ class Reader {
   };
   std::vector<Section> sections_;
   std::set<std::string> variants_, skipped_types_;  // notes on types of tetrahedra; other types
-  Sets node_sets_, element_sets_;
-  std::vector<std::string> node_set_order_, element_set_order_;
   ImportedModel model_;
 };
 

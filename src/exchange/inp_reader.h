@@ -31,7 +31,7 @@ struct ImportedMaterial {
 
 struct ImportedModel {
   TetMesh mesh;  // nodes in the order of the file, unused ones dropped
-  // Those that are not empty; the others are named in `notes`.
+  // Sets of the file that are not empty; the others are named in `notes`.
   std::vector<NamedNodes> node_sets;     // of nodes of `mesh`, ascending
   std::vector<NamedNodes> element_sets;  // of elements of `mesh`, ascending
   std::vector<ImportedMaterial> materials;

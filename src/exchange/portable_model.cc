@@ -8,9 +8,7 @@
 
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
-#include "effects/neo_hookean.h"
 #include "effects/standard_cards.h"
-#include "effects/stiffness_damping.h"
 #include "effects/uniform_density.h"
 #include "fem/prescribed_force.h"
 

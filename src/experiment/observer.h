@@ -49,7 +49,7 @@ class Observer {
   Observed Observe(int frame, const Eigen::VectorXd& position) const {
     return ObserveWithin(1, frame, position);
   }
-  // The same with `reach_factor` times the reach within which scanned points find their
+  // Observe() with `reach_factor` times the reach within which scanned points find their
   // correspondence. A larger factor finds more of them, and more wrong ones.
   virtual Observed ObserveWithin(double reach_factor, int frame,
                                  const Eigen::VectorXd& position) const = 0;

@@ -12,15 +12,15 @@
 namespace lacuna {
 
 struct RecordingScatter {
-  // Of scans: σ of a point about the surface through its neighbours, along the normal
-  // (scan/surface_scatter.h). Of markers and tracked points: σ of a coordinate about the motion of
-  // its point (analysis/track_scatter.h).
+  // Whether the scatter is that of scanned points, σ of a point about the surface through its
+  // neighbours along the normal (scan/surface_scatter.h), or that of markers and tracked points, σ
+  // of a coordinate about the motion of its point (analysis/track_scatter.h).
   bool is_of_surface = false;
   // m, σ: of scans the median over the frames, of tracks that of all of them together, or of a
   // marker of weight 1 where they have weights. NaN where nothing can be said.
   double typical = std::numeric_limits<double>::quiet_NaN();
-  // It includes shape or motion that the recording does not resolve. Of tracks: it is not that of
-  // frames in which the points rest.
+  // The scatter includes shape or motion that the recording does not resolve; that of tracks was
+  // not taken from frames in which the points rest.
   bool is_upper_bound = false;
   double largest = 0;        // m, σ of the frame, marker or tracked point that scatters most
   std::string largest_in;    // its name: "frame 7", "marker tip", or "point p12" of row 12
@@ -48,12 +48,12 @@ class ScatterSurvey {
   RecordingScatter OfTracks() const;
 
   const Recording& recording_;
-  // Of the scans added so far, one entry per frame in which the scatter is known:
+  // What the scans added so far show, one entry per frame in which the scatter is known:
   std::vector<int> frames_;
   std::vector<double> deviations_, spacings_, outlier_shares_;  // m, m, –
   std::vector<bool> is_upper_bound_;
   double farthest_ = 0;  // m
-  // Of the tracked points added so far: places by row (3 × rows, NaN: not seen), one per frame.
+  // The places of the tracked points added so far by row (3 × rows, NaN: not seen), one per frame.
   std::vector<int> tracked_frames_;
   std::vector<Eigen::Matrix3Xd> places_;
 };

@@ -9,9 +9,9 @@
 
 #include "core/error.h"
 #include "core/median.h"
+#include "core/random_bits.h"
 #include "experiment/frame_states.h"
 #include "geometry/nearest.h"
-#include "scan/random_bits.h"
 
 namespace lacuna {
 namespace {

@@ -15,7 +15,7 @@
 #include "core/progress.h"
 #include "experiment/model_reader.h"
 #include "fem/nodal_recovery.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "scan/virtual_scanner.h"
 
 namespace lacuna {
@@ -100,8 +100,8 @@ inline constexpr int kSceneVersion = 1;
 // A mesh or a step that fails is reported by the status. Throws Interrupted, and OutOfMemory
 // (core/memory_limit.h).
 SceneMotion SimulateScene(const Scene& scene, Progress* progress);
-// The same where nothing can be done without the motion: a failure is an InputError, which names
-// the scene.
+// SimulateScene() where nothing can be done without the motion: a failure is an InputError, which
+// names the scene.
 SceneMotion SimulateWholeScene(const Scene& scene, Progress* progress);
 
 // Writes what the scanner sees as a recording into `folder`, and the true surfaces into its

@@ -50,16 +50,15 @@ void AddBlockProduct(const double* block, const double* node, int width, double*
 }
 
 // y = Σ block · x over the blocks of a row. Each column of a block is read together with the entry
-// behind it, which is ignored; hence values_ has one more entry.
+// after it, which is ignored; hence values_ has one more entry.
 LACUNA_FOR_EACH_INSTRUCTION_SET
 void MultiplyRow(const double* block, const int* column, int count, const double* x, double* y) {
-  typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
   Four sum = {0, 0, 0, 0};
   for (int k = 0; k < count; ++k, block += 9) {
     const double* node = x + 3 * static_cast<int64_t>(column[k]);
-    sum += *reinterpret_cast<const Four*>(block) * node[0] +
-           *reinterpret_cast<const Four*>(block + 3) * node[1] +
-           *reinterpret_cast<const Four*>(block + 6) * node[2];
+    sum += *reinterpret_cast<const UnalignedFour*>(block) * node[0] +
+           *reinterpret_cast<const UnalignedFour*>(block + 3) * node[1] +
+           *reinterpret_cast<const UnalignedFour*>(block + 6) * node[2];
   }
   for (int a = 0; a < 3; ++a) y[a] = sum[a];
 }

@@ -50,6 +50,8 @@
 #ifndef LACUNA_FEM_EFFECT_H_
 #define LACUNA_FEM_EFFECT_H_
 
+#include <glog/logging.h>
+
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
@@ -74,16 +76,23 @@ struct Kinematics {
   // strains. Empty for an effect without memory.
   const Eigen::VectorXd& state;
   // The elasticity law of the body at its present parameters, for an effect that is defined
-  // relative to that law. Null where no model is at hand.
+  // relative to that law. Null if the effect is evaluated by itself, without a model.
   const Effect* elasticity = nullptr;
   // Whether the step has inertia. Otherwise the body is in equilibrium at `time`; the length of a
   // quasi-static step then matters for rates and for internal variables only.
   bool has_inertia = false;
 
-  // The same with other internal variables, to which the result refers.
+  // The kinematics with other internal variables, to which the result refers.
   Kinematics WithState(const Eigen::VectorXd& other) const {
-    return {body,      position, velocity,   acceleration, time,
-            time_step, other,    elasticity, has_inertia};
+    return {.body = body,
+            .position = position,
+            .velocity = velocity,
+            .acceleration = acceleration,
+            .time = time,
+            .time_step = time_step,
+            .state = other,
+            .elasticity = elasticity,
+            .has_inertia = has_inertia};
   }
 };
 
@@ -148,9 +157,15 @@ class Effect {
   // Internal variables z: their number for a body, their values at rest, and their values at the
   // end of the step that leads to `at`, which depend on the positions, the time step, the
   // parameters and the values at its start. InitialState and AdvanceState overwrite their output.
+  // An effect with internal variables must define all functions below; the defaults CHECK that
+  // there are none.
   virtual Eigen::Index StateSize(const Body&) const { return 0; }
-  virtual void InitialState(const Body&, Eigen::VectorXd* /*state*/) const {}
-  virtual void AdvanceState(const Kinematics&, Eigen::VectorXd* /*state_at_end*/) const {}
+  virtual void InitialState(const Body& body, Eigen::VectorXd* /*state*/) const {
+    CheckHasNoState(body, "InitialState");
+  }
+  virtual void AdvanceState(const Kinematics& at, Eigen::VectorXd* /*state_at_end*/) const {
+    CheckHasNoState(at.body, "AdvanceState");
+  }
 
   // The derivatives of an effect with internal variables; k columns for k directions. At a limit
   // such as that of yield, they belong to the same branch as the tangent of AddTangents. A point
@@ -158,18 +173,29 @@ class Effect {
   // branches would mix where the next step does not move it.
   //
   // Adds ∂f/∂z · changes (state × k) to `forces` (3n × k, N).
-  virtual void AddStateDerivatives(const Kinematics& /*at*/,
+  virtual void AddStateDerivatives(const Kinematics& at,
                                    const Eigen::Ref<const Eigen::MatrixXd>& /*changes*/,
-                                   Eigen::Ref<Eigen::MatrixXd> /*forces*/) const {}
+                                   Eigen::Ref<Eigen::MatrixXd> /*forces*/) const {
+    CheckHasNoState(at.body, "AddStateDerivatives");
+  }
   // Replaces changes of z at the start of the step (state × k) by those at its end, where the
   // positions at its end change by `moved` (3n × k, m).
-  virtual void AdvanceStateDerivatives(const Kinematics& /*at*/,
+  virtual void AdvanceStateDerivatives(const Kinematics& at,
                                        const Eigen::Ref<const Eigen::MatrixXd>& /*moved*/,
-                                       Eigen::Ref<Eigen::MatrixXd> /*changes*/) const {}
+                                       Eigen::Ref<Eigen::MatrixXd> /*changes*/) const {
+    CheckHasNoState(at.body, "AdvanceStateDerivatives");
+  }
   // Adds ∂z/∂p at the end of the step, at fixed positions and fixed z at its start, for the
   // parameter of this number, per unit of the parameter. Not called for settings.
-  virtual void AddStateByParameter(const Kinematics& /*at*/, int /*parameter*/,
-                                   Eigen::Ref<Eigen::VectorXd> /*change*/) const {}
+  virtual void AddStateByParameter(const Kinematics& at, int /*parameter*/,
+                                   Eigen::Ref<Eigen::VectorXd> /*change*/) const {
+    CheckHasNoState(at.body, "AddStateByParameter");
+  }
+
+ private:
+  void CheckHasNoState(const Body& body, const char* function) const {
+    CHECK_EQ(StateSize(body), 0) << Card().type << " has internal variables, but no " << function;
+  }
 };
 
 }  // namespace lacuna

@@ -23,10 +23,16 @@ const std::vector<Eigen::VectorXd>& EffectMemory::Advance(const Eigen::VectorXd&
   for (size_t j = 0; j < state_.size(); ++j) {
     if (state_[j].size() == 0) continue;
     const Eigen::VectorXd before = state_[j];
-    model_.effects[j]->AdvanceState(
-        {*model_.body, position, velocity, no_acceleration, time, time_step, before,
-         ElasticityOf(model_), has_inertia_ && time_step > 0},
-        &state_[j]);
+    model_.effects[j]->AdvanceState({.body = *model_.body,
+                                     .position = position,
+                                     .velocity = velocity,
+                                     .acceleration = no_acceleration,
+                                     .time = time,
+                                     .time_step = time_step,
+                                     .state = before,
+                                     .elasticity = ElasticityOf(model_),
+                                     .has_inertia = has_inertia_ && time_step > 0},
+                                    &state_[j]);
   }
   return state_;
 }

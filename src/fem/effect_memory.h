@@ -13,7 +13,7 @@
 
 namespace lacuna {
 
-// Keeps a reference to the model.
+// Keeps a reference to the model, which must outlive it.
 class EffectMemory {
  public:
   // `scheme`: that of the prediction.

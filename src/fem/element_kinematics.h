@@ -37,10 +37,11 @@ Eigen::Map<const Eigen::Matrix<double, kNodes, 3>> ShapeGradient(const Body& bod
   return Eigen::Map<const Eigen::Matrix<double, kNodes, 3>>(&body.shape_gradient(0, 3 * q));
 }
 
-// For elements of 4 or 10 nodes: the gradients of a nodal field at the `points` whose shape
-// gradients stand one after another, 9 numbers (column-major) for each point; and the opposite,
-// which takes Σ_q P_q g_a(q) off the values of a nodal field at each node a, for matrices P_q that
-// stand alike.
+// The operations of FieldGradients and AddPointForces on plain arrays, for elements of 4 or 10
+// nodes with the numbers `node`. `shape_gradient` holds the shape gradients at all quadrature
+// points of the element, one point after another; `gradient` and `P` hold one 3 × 3 matrix per
+// point, column-major. GradientsOf… overwrites `gradient` with Σ_a u_a ⊗ g_a of the nodal field u;
+// SubtractForcesOf… subtracts Σ_q P_q g_a(q) from the field at each node a.
 void GradientsOf4(const double* field, const int* node, const double* shape_gradient,
                   double* gradient);
 void GradientsOf10(const double* field, const int* node, const double* shape_gradient,

@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "fem/point_integrals.h"
+#include "fem/element_kinematics.h"
 
 namespace lacuna {
 
@@ -18,9 +18,8 @@ ElementStrain MeanStrain(const Body& body, int element, const Eigen::VectorXd& p
     double volume = 0;
     for (int p = 0; p < kPoints; ++p) {
       const double weight = body.weight[element * kPoints + p];
-      const Eigen::Matrix3d product = F[p].transpose() * rate[p];
       mean.strain += weight * GreenLagrangeStrain(F[p]);
-      mean.rate += weight * ToKelvin(0.5 * (product + product.transpose()));
+      mean.rate += weight * StrainChange(F[p], rate[p]);
       volume += weight;
     }
     mean.strain /= volume;

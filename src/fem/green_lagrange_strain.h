@@ -8,7 +8,7 @@
 #define LACUNA_FEM_GREEN_LAGRANGE_STRAIN_H_
 
 #include <Eigen/Core>
-#include <cmath>
+#include <numbers>
 
 #include "fem/lame_constants.h"
 #include "fem/stress_tangent.h"
@@ -22,13 +22,14 @@ using KelvinMatrix = Eigen::Matrix<double, 6, 6>;
 
 // Converts a symmetric tensor; only its upper triangle is read.
 inline KelvinVector ToKelvin(const Eigen::Matrix3d& A) {
+  using std::numbers::sqrt2;
   KelvinVector vector;
-  vector << A(0, 0), A(1, 1), A(2, 2), M_SQRT2 * A(1, 2), M_SQRT2 * A(0, 2), M_SQRT2 * A(0, 1);
+  vector << A(0, 0), A(1, 1), A(2, 2), sqrt2 * A(1, 2), sqrt2 * A(0, 2), sqrt2 * A(0, 1);
   return vector;
 }
 
 inline Eigen::Matrix3d FromKelvin(const KelvinVector& vector) {
-  const Eigen::Vector3d shear = M_SQRT1_2 * vector.tail<3>();
+  const Eigen::Vector3d shear = std::numbers::sqrt2 / 2 * vector.tail<3>();
   return Eigen::Matrix3d{{vector[0], shear[2], shear[1]},
                          {shear[2], vector[1], shear[0]},
                          {shear[1], shear[0], vector[2]}};
@@ -57,7 +58,7 @@ inline KelvinVector GreenLagrangeStrain(const Eigen::Matrix3d& F) {
   return strain;
 }
 
-// Its change ½ (Fᵀ δF + δFᵀ F) where F changes by δF.
+// The change ½ (Fᵀ δF + δFᵀ F) of the Green–Lagrange strain where F changes by δF.
 inline KelvinVector StrainChange(const Eigen::Matrix3d& F, const Eigen::Matrix3d& change) {
   const Eigen::Matrix3d product = F.transpose() * change;
   return 0.5 * ToKelvin(product + product.transpose());
@@ -70,8 +71,8 @@ inline Eigen::Matrix<double, 6, 9> StrainDerivative(const Eigen::Matrix3d& F) {
     const int i = (k + 1) % 3;
     const int j = (k + 2) % 3;
     derivative.block<1, 3>(k, 3 * k) = F.col(k).transpose();
-    derivative.block<1, 3>(3 + k, 3 * i) = M_SQRT1_2 * F.col(j).transpose();
-    derivative.block<1, 3>(3 + k, 3 * j) = M_SQRT1_2 * F.col(i).transpose();
+    derivative.block<1, 3>(3 + k, 3 * i) = std::numbers::sqrt2 / 2 * F.col(j).transpose();
+    derivative.block<1, 3>(3 + k, 3 * j) = std::numbers::sqrt2 / 2 * F.col(i).transpose();
   }
   return derivative;
 }

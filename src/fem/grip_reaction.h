@@ -35,8 +35,8 @@ Eigen::VectorXd NodalReactions(const StepEquation& equation, const Eigen::Vector
 Eigen::VectorXd SumReactions(const Model& model, const std::vector<Reaction>& reactions,
                              const Eigen::VectorXd& position, const Eigen::VectorXd& forces);
 
-// Their derivatives, 3·reactions × k, where the positions and the nodal forces change by
-// `position_by` and `forces_by` (3n × k).
+// The derivatives of SumReactions(), 3·reactions × k, where the positions and the nodal forces
+// change by `position_by` and `forces_by` (3n × k).
 Eigen::MatrixXd SumReactionChanges(const Model& model, const std::vector<Reaction>& reactions,
                                    const Eigen::VectorXd& position, const Eigen::VectorXd& forces,
                                    const Eigen::MatrixXd& position_by,

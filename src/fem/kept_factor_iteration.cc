@@ -19,8 +19,7 @@ constexpr double kSufficientFall = 0.5, kTolerableFall = 0.9;
 constexpr int kStepsToJudge = 2;
 
 // Steps −M⁻¹ r with a fixed factor M of a tangent, each combined with the earlier ones so that the
-// residual becomes smallest to first order, in the norm of M⁻¹ (Anderson 1965; for a linear
-// equation this is the method of minimal residuals, Walker & Ni 2011).
+// residual becomes smallest to first order, in the norm of M⁻¹.
 class ChordSteps {
  public:
   // The step from an iterate with residual r, where `image` is M⁻¹ r. The iterate is that to which

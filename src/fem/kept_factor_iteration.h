@@ -1,8 +1,11 @@
 // The solution of a time step with the factor of an earlier tangent.
 //
-// With a fixed factor M of a tangent, the steps −M⁻¹ r are combined by Anderson's mixing. The
-// present tangent is not assembled, so that a step of a smooth motion costs little more than a few
-// residuals. The factor is renewed once where that is cheaper than to go on.
+// With a fixed factor M of a tangent, the steps −M⁻¹ r are combined by Anderson's mixing (D. G.
+// Anderson, Journal of the ACM 12, 1965), here with the combination whose residual is smallest to
+// first order in the norm of M⁻¹; for a linear equation this is the method of minimal residuals
+// (H. F. Walker & P. Ni, SIAM Journal on Numerical Analysis 49, 2011). The present tangent is not
+// assembled, so that a step of a smooth motion costs little more than a few residuals. The factor
+// is renewed once where that is cheaper than to go on.
 #ifndef LACUNA_FEM_KEPT_FACTOR_ITERATION_H_
 #define LACUNA_FEM_KEPT_FACTOR_ITERATION_H_
 

@@ -36,13 +36,6 @@ constexpr int kIterationsToJudge = 4;
 // Number of earlier solutions from whose combination the iteration starts.
 constexpr int kRememberedSolutions = 3;
 
-std::vector<AxisSet> AxesOfNodes(const std::vector<char>& fixed) {
-  std::vector<AxisSet> axes(fixed.size());
-  for (size_t i = 0; i < fixed.size(); ++i)
-    if (fixed[i]) axes[i] = AxisSet::All();
-  return axes;
-}
-
 }  // namespace
 
 struct LinearSolver::Implementation {
@@ -92,8 +85,8 @@ struct LinearSolver::Implementation {
   enum class Outcome { kConverged, kIndefinite, kTooManyIterations, kBrokenDown };
   Outcome Iterate(const BlockMatrix& A, double b_norm, bool may_renew, Eigen::VectorXd* x,
                   LinearSolveSummary* summary);
-  bool RenewalPays(int iterations, double first_residual, double present_residual,
-                   double target) const;
+  bool IsRenewalCheaper(int iterations, double first_residual, double present_residual,
+                        double target) const;
   void StartFromEarlierSolutions(const BlockMatrix& A, Eigen::VectorXd* x);
   LinearSolveSummary Solve(const BlockMatrix& A, const Eigen::VectorXd& b, Eigen::VectorXd* x,
                            const std::vector<Eigen::Matrix3d>* rotations);
@@ -225,8 +218,8 @@ void LinearSolver::Implementation::StartFromEarlierSolutions(const BlockMatrix& 
 }
 
 // Whether a new factorisation would be cheaper than finishing the iteration at its rate so far.
-bool LinearSolver::Implementation::RenewalPays(int iterations, double first_residual,
-                                               double present_residual, double target) const {
+bool LinearSolver::Implementation::IsRenewalCheaper(int iterations, double first_residual,
+                                                    double present_residual, double target) const {
   const double digits_gained = std::log(first_residual / present_residual);
   const double digits_missing = std::log(present_residual / target);
   const double iterations_missing = digits_missing * iterations / std::max(digits_gained, 1e-3);
@@ -244,7 +237,7 @@ LinearSolver::Implementation::Outcome LinearSolver::Implementation::Iterate(
   for (int k = 0;; ++k) {
     const double norm = residual.norm();
     if (norm <= target) return Outcome::kConverged;
-    if (may_renew && k >= kIterationsToJudge && RenewalPays(k, first_norm, norm, target))
+    if (may_renew && k >= kIterationsToJudge && IsRenewalCheaper(k, first_norm, norm, target))
       return Outcome::kTooManyIterations;
     if (k == kMaxIterations) return Outcome::kTooManyIterations;
     ApplyFactor(residual, &preconditioned);
@@ -332,10 +325,6 @@ LinearSolver::LinearSolver(std::shared_ptr<const BlockPattern> pattern, const He
   openblas_set_num_threads(1);
 }
 
-LinearSolver::LinearSolver(std::shared_ptr<const BlockPattern> pattern,
-                           const std::vector<char>& fixed, const LinearSolverOptions& options)
-    : LinearSolver(std::move(pattern), HeldComponents(AxesOfNodes(fixed)), options) {}
-
 LinearSolver::~LinearSolver() = default;
 LinearSolver::LinearSolver(LinearSolver&&) noexcept = default;
 LinearSolver& LinearSolver::operator=(LinearSolver&&) noexcept = default;
@@ -371,7 +360,7 @@ void LinearSolver::ApplyFactor(const Eigen::VectorXd& r,
 
 bool LinearSolver::IsRenewalCheaper(int applications, double first, double present,
                                     double target) const {
-  return implementation_->RenewalPays(applications, first, present, target);
+  return implementation_->IsRenewalCheaper(applications, first, present, target);
 }
 
 void LinearSolver::CountApplications(int applications) {

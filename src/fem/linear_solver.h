@@ -26,7 +26,8 @@ struct LinearSolverOptions {
     kDirect,      // a factorisation for every matrix
   };
   Method method = Method::kKeptFactor;
-  double relative_tolerance = 1e-9;  // ‖b − A x‖ ≤ tolerance·‖b‖; smaller: more iterations
+  // ‖b − A x‖ ≤ tolerance·‖b‖. Smaller values take more iterations.
+  double relative_tolerance = 1e-9;
 };
 
 struct LinearSolveSummary {
@@ -44,9 +45,6 @@ class LinearSolver {
  public:
   // The rows and columns of held components are left out and x is 0 there.
   LinearSolver(std::shared_ptr<const BlockPattern> pattern, const HeldComponents& held,
-               const LinearSolverOptions& options);
-  // The same where nodes are free or held along all axes; `fixed[i]` marks node i as held.
-  LinearSolver(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed,
                const LinearSolverOptions& options);
   ~LinearSolver();
   LinearSolver(LinearSolver&&) noexcept;
@@ -74,10 +72,12 @@ class LinearSolver {
   // held components of r must be 0. CHECKs that there is a factor.
   void ApplyFactor(const Eigen::VectorXd& r, const std::vector<Eigen::Matrix3d>& node_rotations,
                    Eigen::VectorXd* z);
-  // Whether a new factor is expected to cost less than the further applications, where so many have
-  // reduced a residual from `first` to `present`, until it is `target`.
+  // Whether a new factor is expected to cost less than the applications of the kept one that are
+  // still needed to reduce the residual from `present` to `target`, if they converge at the rate of
+  // the past `applications`, which reduced it from `first` to `present`. Only the ratios of the
+  // three norms matter, so that they may have any common unit.
   bool IsRenewalCheaper(int applications, double first, double present, double target) const;
-  // Counts so many applications as one solve, for the decision when to renew the factor.
+  // Counts this many applications as one solve, for the decision when to renew the factor.
   void CountApplications(int applications);
 
   // Discards the kept factor, for a next matrix that differs much from the last one.

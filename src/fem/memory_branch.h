@@ -69,7 +69,7 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
     const double modulus = Modulus();
     const Law law(parameters_, at.time_step);
-    AddNodalStress(
+    AddNodalForcesOf(
         at,
         [&](const KelvinVector& strain, const State& state) {
           return KelvinVector(modulus * law.Stress(strain, state));
@@ -101,7 +101,7 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     CHECK(!Card().parameters[parameter].setting);
     const double modulus = Modulus();
     const Law law(parameters_, at.time_step);
-    AddNodalStress(
+    AddNodalForcesOf(
         at,
         [&](const KelvinVector& strain, const State& state) {
           return parameter == 0
@@ -174,7 +174,7 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     for (int p = 0; p < kPoints; ++p) visit(element * kPoints + p, F[p]);
   }
 
-  // The same for all elements.
+  // Calls visit(q, F) for each quadrature point q of all elements.
   template <typename Visit>
   static void ForEachPoint(const Kinematics& at, const Visit& visit) {
     CHECK_EQ(at.state.size(), Eigen::Index{Law::kStateSize} * at.body.PointCount());
@@ -187,14 +187,14 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
 
   // Adds the nodal forces −Σ w F S g_a with S = stress(strain, state).
   template <typename Stress>
-  void AddNodalStress(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) const {
+  void AddNodalForcesOf(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) const {
     CHECK_EQ(at.state.size(), StateSize(at.body));
     WithNodesPerElement(
-        at.body, [&](auto nodes) { AddNodalStress<decltype(nodes)::value>(at, stress, force); });
+        at.body, [&](auto nodes) { AddNodalForcesOf<decltype(nodes)::value>(at, stress, force); });
   }
 
   template <int kNodes, typename Stress>
-  static void AddNodalStress(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) {
+  static void AddNodalForcesOf(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) {
     const Body& body = at.body;
     ForEachElement(*body.schedule, [&](int element) {
       constexpr int kPoints = QuadraturePoints<kNodes>();

@@ -15,9 +15,14 @@ Eigen::VectorXd AddedMassOf(const Effect& effect, const Model& model, const Moti
                             const Eigen::VectorXd& state) {
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(rest.position.size());
   BlockMatrix inertia(model.body->pattern);
-  effect.AddTangents(
-      {*model.body, rest.position, still, still, 0, 0, state, ElasticityOf(model), true},
-      {.acceleration = -1}, /*convexify=*/false, &inertia);
+  effect.AddTangents({.body = *model.body,
+                      .position = rest.position,
+                      .velocity = still,
+                      .acceleration = still,
+                      .state = state,
+                      .elasticity = ElasticityOf(model),
+                      .has_inertia = true},
+                     {.acceleration = -1}, /*convexify=*/false, &inertia);
   Eigen::VectorXd mass(model.body->NodeCount());
   for (Eigen::Index i = 0; i < mass.size(); ++i) {
     const auto block = inertia.Block(inertia.pattern().diagonal[static_cast<size_t>(i)]);
@@ -28,7 +33,7 @@ Eigen::VectorXd AddedMassOf(const Effect& effect, const Model& model, const Moti
 
 }  // namespace
 
-std::string MissingMass(const Model& model) {
+std::string DescribeMissingMass(const Model& model) {
   constexpr double kGram = 1e-3, kMillimetre = 1e-3;
   const Eigen::VectorXd& own = model.body->node_mass;
   const MotionHistory rest = RestHistory(model);

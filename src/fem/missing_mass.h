@@ -13,9 +13,10 @@
 
 namespace lacuna {
 
-// Empty if M + A is positive at all nodes of the model at rest. Otherwise it names the effect that
-// removes most at the worst of the nodes, its size, the place and the masses there.
-std::string MissingMass(const Model& model);
+// Returns an empty text if M + A is positive at all nodes of the model at rest, and otherwise a
+// sentence that names the effect that removes most at the worst of the nodes, its size, the place
+// and the masses there.
+std::string DescribeMissingMass(const Model& model);
 
 }  // namespace lacuna
 

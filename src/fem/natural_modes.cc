@@ -21,7 +21,8 @@ constexpr double kShift = 1e-7;
 constexpr int kMostIterations = 300;
 // Frequencies are accepted where all wanted eigenvalues change by less than this share.
 constexpr double kTolerance = 1e-10;
-// The subspace has this many columns more than wanted modes: faster convergence, more work.
+// The subspace has this many columns more than wanted modes. Larger values make the iteration
+// converge faster, but each iteration costs more.
 constexpr int kFurtherColumns = 8;
 
 // Masses of the components; those that are held have none.
@@ -38,9 +39,13 @@ BlockMatrix StiffnessAt(const Model& model, const Eigen::VectorXd& position) {
   const MotionHistory rest = RestHistory(model);
   BlockMatrix stiffness(model.body->pattern);
   for (size_t j = 0; j < model.effects.size(); ++j)
-    model.effects[j]->AddTangents(
-        {*model.body, position, zero, zero, 0, 0, rest.effect_state[j], ElasticityOf(model)},
-        {.position = -1}, false, &stiffness);
+    model.effects[j]->AddTangents({.body = *model.body,
+                                   .position = position,
+                                   .velocity = zero,
+                                   .acceleration = zero,
+                                   .state = rest.effect_state[j],
+                                   .elasticity = ElasticityOf(model)},
+                                  {.position = -1}, false, &stiffness);
   return stiffness;
 }
 

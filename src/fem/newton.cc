@@ -12,6 +12,7 @@
 
 #include "fem/kept_factor_iteration.h"
 #include "fem/node_rotations.h"
+#include "fem/unsymmetric_factor.h"
 
 namespace lacuna {
 namespace {
@@ -165,6 +166,8 @@ class Newton {
   // technique, Chamberlain et al. 1982). Returns false, with status and message, if no step is
   // found.
   bool Advance(NewtonIterate* at) {
+    if (needs_skew_ && AdvanceByWholeTangent(at)) return true;
+    needs_skew_ = false;
     if (FollowChord(at)) return true;
     std::string why;
     const std::optional<Eigen::VectorXd> step = NewtonStep(*at, &why);
@@ -172,7 +175,12 @@ class Newton {
     NewtonIterate full = Evaluate(at->position + *step);
     const double slope = at->residual.dot(*step);
     const double work = Work(*at, full, *step);
-    if (Falls(at, &full, slope, work)) {
+    const bool falls = Falls(at, &full, slope, work);
+    if (MayLackSkew(*at, full, falls) && AdvanceByWholeTangent(at)) {
+      needs_skew_ = true;
+      return true;
+    }
+    if (falls) {
       *at = std::move(full);
       // Near the solution the exact tangent is definite and converges quadratically.
       convexify_ = false;
@@ -189,6 +197,64 @@ class Newton {
     may_climb_ = false;
     if (SearchLine(at, *step, slope, full)) return true;
     return Fail(NewtonSummary::Status::kNoConvergence, "no descent along the Newton direction");
+  }
+
+  // Whether the skew-symmetric part of the tangent, which a Newton step leaves out, may be what
+  // keeps the residual from falling: the step does not reduce it enough, or several steps in
+  // succession have hardly reduced it. Such steps converge linearly at best, and not at all where a
+  // load that turns with the body bends it far.
+  bool MayLackSkew(const NewtonIterate& from, const NewtonIterate& to, bool falls) {
+    // The ratio of residuals of a slow step, and the number of slow steps in succession that are
+    // tolerated. Smaller values factorise the whole tangent more often.
+    constexpr double kSlow = 0.5;
+    constexpr int kMostSlow = 3;
+    slow_steps_ = to.residual.norm() > kSlow * from.residual.norm() ? slow_steps_ + 1 : 0;
+    return !whole_fails_ && (!falls || slow_steps_ >= kMostSlow);
+  }
+
+  // The step of the whole tangent. No value where it has no skew-symmetric part or is singular.
+  std::optional<Eigen::VectorXd> WholeStep(const NewtonIterate& at) const {
+    BlockMatrix skew(tangent_.shared_pattern());
+    if (!problem_.equation.SkewTangent(at.position, &skew)) return std::nullopt;
+    BlockMatrix symmetric(tangent_.shared_pattern());
+    problem_.equation.Tangent(at.position, /*convexify=*/false, &symmetric);
+    const UnsymmetricFactor whole(problem_.held, symmetric, &skew);
+    if (!whole.IsUsable()) return std::nullopt;
+    Eigen::VectorXd step = whole.Solve(-at.residual);
+    if (!step.allFinite()) return std::nullopt;
+    return step;
+  }
+
+  // An iteration with the whole tangent, whose steps reduce the norm of the residual if they are
+  // short enough. As in Advance(), a full step may increase it if the next one more than makes up
+  // for that. If there is no such step, returns false, leaves `at` unchanged, and the whole tangent
+  // is not tried again.
+  bool AdvanceByWholeTangent(NewtonIterate* at) {
+    constexpr double kSufficient = 1e-4;
+    // The shortest step that is tried. Smaller values give up later.
+    constexpr double kShortest = 1.0 / 64;
+    const double before = at->residual.norm();
+    const auto is_sufficient = [&](const NewtonIterate& to, double length) {
+      return to.residual.norm() <= (1 - kSufficient * length) * before;  // false for NaN
+    };
+    whole_fails_ = true;
+    const std::optional<Eigen::VectorXd> step = WholeStep(*at);
+    if (!step) return false;
+    NewtonIterate trial = Evaluate(at->position + *step);
+    if (!is_sufficient(trial, 1) && trial.residual.allFinite() &&
+        summary_.iterations < problem_.max_iterations) {
+      ++summary_.iterations;
+      if (const std::optional<Eigen::VectorXd> next = WholeStep(trial))
+        trial = Evaluate(trial.position + *next);
+    }
+    for (double length = 1; !is_sufficient(trial, length);) {
+      length /= 2;
+      if (length < kShortest) return false;
+      trial = Evaluate(at->position + length * *step);
+    }
+    *at = std::move(trial);
+    whole_fails_ = convexify_ = has_tangent_ = false;
+    return true;
   }
 
   // Takes another full step from `full`, where the potential exceeds that of `start`. No value
@@ -289,6 +355,9 @@ class Newton {
   NewtonSummary summary_;
   bool convexify_ = false;
   bool may_climb_ = true;
+  int slow_steps_ = 0;                      // in succession, which hardly reduced the residual
+  bool needs_skew_ = false;                 // a step of the whole tangent has served
+  bool whole_fails_ = false;                // the last one that was tried did not serve
   bool has_tangent_ = false;                // `tangent_` is exact for an earlier iterate
   std::vector<Eigen::Matrix3d> rotations_;  // rotations of the nodes at that iterate
   // Residuals below this norm, N, are rounding errors. Infinite until a tangent has been assembled.

@@ -5,7 +5,9 @@
 // tangent (kept_factor_iteration.h); most steps of a smooth motion end there. Otherwise the tangent
 // is exact, or a positive definite approximation where the exact one is indefinite, and steps are
 // globalised by a line search on the potential of r, or on the work of r along the step if r has no
-// potential.
+// potential. The tangent is its symmetric part. Loads that turn with the body (effect.h) add a
+// skew-symmetric part, which is included, at the cost of an LU factor, where steps without it
+// converge slowly or not at all.
 #ifndef LACUNA_FEM_NEWTON_H_
 #define LACUNA_FEM_NEWTON_H_
 

@@ -81,8 +81,14 @@ NodalStress RecoverNodalStress(const Model& model, const Eigen::VectorXd& positi
   const Eigen::VectorXd no_acceleration = Eigen::VectorXd::Zero(position.size());
   Eigen::Matrix3Xd first_stress = Eigen::Matrix3Xd::Zero(3, 3 * body.PointCount());
   for (size_t j = 0; j < model.effects.size(); ++j)
-    model.effects[j]->AddStress({body, position, velocity, no_acceleration, time, kInstant,
-                                 effect_state[j], ElasticityOf(model)},
+    model.effects[j]->AddStress({.body = body,
+                                 .position = position,
+                                 .velocity = velocity,
+                                 .acceleration = no_acceleration,
+                                 .time = time,
+                                 .time_step = kInstant,
+                                 .state = effect_state[j],
+                                 .elasticity = ElasticityOf(model)},
                                 &first_stress);
   const Eigen::MatrixXd gradients = WithNodesPerElement(
       body, [&](auto nodes) { return GradientsAtPoints<decltype(nodes)::value>(body, position); });

@@ -24,9 +24,9 @@ struct NodalStress {
   Eigen::Matrix3Xd stretch;   // 3 × n: principal stretches, the largest first
 };
 
-// At `position` and `velocity` (3n, node-major, m and m/s) at `time` (s), with the internal
-// variables of each effect of the model there, at the end of the step that led to this state.
-// Values are not finite where a law cannot be evaluated.
+// The stresses and stretches at `position` and `velocity` (3n, node-major, m and m/s) at `time`
+// (s), with the internal variables of each effect of the model there, at the end of the step that
+// led to this state. Values are not finite where a law cannot be evaluated.
 NodalStress RecoverNodalStress(const Model& model, const Eigen::VectorXd& position,
                                const Eigen::VectorXd& velocity, double time,
                                const std::vector<Eigen::VectorXd>& effect_state);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "fem/grip_reaction.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "fem/tangent_linear.h"
 
 namespace lacuna {

@@ -68,10 +68,16 @@ class TangentsAlong {
     const TangentWeights negative{-weights.position, -weights.velocity, -weights.acceleration};
     matrix_.SetZero();
     for (size_t j = 0; j < model_.effects.size(); ++j)
-      model_.effects[j]->AddTangents(
-          {*model_.body, state.position, state.velocity, no_acceleration, state.time, time_step_,
-           state.effect_state[j], ElasticityOf(model_), has_inertia_},
-          negative, convexify, &matrix_);
+      model_.effects[j]->AddTangents({.body = *model_.body,
+                                      .position = state.position,
+                                      .velocity = state.velocity,
+                                      .acceleration = no_acceleration,
+                                      .time = state.time,
+                                      .time_step = time_step_,
+                                      .state = state.effect_state[j],
+                                      .elasticity = ElasticityOf(model_),
+                                      .has_inertia = has_inertia_},
+                                     negative, convexify, &matrix_);
   }
 
   const Model& model_;

@@ -2,9 +2,10 @@
 //
 // The tangent-linear model (tangent_linear.h) is projected onto a basis Φ of few shapes, δx = Φ q:
 //   Φᵀ(M + A)Φ q̈ + ΦᵀCΦ q̇ + ΦᵀKΦ q = Φᵀ δf,
-// with K = −∂f/∂x, C = −∂f/∂v and A = −∂f/∂a of the effects at given states of the trajectory, and
-// linear interpolation in time between them. The response to hundreds of force histories then costs
-// less than the trajectory itself.
+// with the symmetric parts K, C and A of −∂f/∂x, −∂f/∂v and −∂f/∂a of the effects
+// (Effect::AddTangents) at given states of the trajectory, and linear interpolation in time between
+// them. The skew-symmetric parts, such as those of loads that turn with the body, are neglected.
+// The response to hundreds of force histories then costs less than the trajectory itself.
 //
 // Φ spans K⁻¹F and K⁻¹MK⁻¹F for given force shapes F at some of the states, i.e. the first two
 // moments of the response about frequency 0 (Su & Craig, Journal of Guidance, Control, and Dynamics
@@ -47,7 +48,8 @@ class ReducedResponse {
  public:
   // `states` are in temporal order; the first one is the equilibrium from which the motion starts,
   // and there must be at least one (CHECK). `shapes` holds the force shapes F (3n × k, N). If the
-  // stiffness is not definite at any of the states, the result is not usable.
+  // stiffness is not definite at any of the states, the result is not usable. The arguments are not
+  // needed after the construction.
   ReducedResponse(const Model& model, const std::vector<TrajectoryState>& states,
                   const Eigen::MatrixXd& shapes, const ReducedResponseOptions& options = {});
 

@@ -57,15 +57,15 @@ StepEquation::EndOfStep StepEquation::End(const Eigen::VectorXd& position) const
 }
 
 Kinematics StepEquation::At(const EndOfStep& end, size_t effect) const {
-  return {*model_.body,
-          end.position,
-          end.velocity,
-          end.acceleration,
-          end_time_,
-          time_step_,
-          history_.effect_state[effect],
-          ElasticityOf(model_),
-          inertia_};
+  return {.body = *model_.body,
+          .position = end.position,
+          .velocity = end.velocity,
+          .acceleration = end.acceleration,
+          .time = end_time_,
+          .time_step = time_step_,
+          .state = history_.effect_state[effect],
+          .elasticity = ElasticityOf(model_),
+          .has_inertia = inertia_};
 }
 
 Eigen::VectorXd StepEquation::Velocity(const Eigen::VectorXd& position) const {

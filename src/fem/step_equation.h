@@ -32,8 +32,8 @@ struct MotionHistory {
 // The history of a body at rest in its rest shape at time 0.
 MotionHistory RestHistory(const Model& model);
 
-// Immutable. The model and the history must outlive the equation, and the position vector an
-// EndOfStep.
+// Immutable. Keeps references to the model and the history, which must outlive it; an EndOfStep
+// keeps one to its position vector.
 class StepEquation {
  public:
   // The state at the end of the step for given positions. Refers to the position vector.

@@ -4,14 +4,11 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "core/parallel.h"
-#include "fem/cholmod_factor.h"
-#include "fem/elimination_order.h"
 #include "fem/held_components.h"
-#include "fem/unsymmetric_factor.h"
+#include "fem/tangent_solver.h"
 
 namespace lacuna {
 namespace {
@@ -24,25 +21,17 @@ Eigen::MatrixXd ScaledRows(const Eigen::VectorXd& node_weight, Eigen::MatrixXd c
   return columns;
 }
 
-// Perturbations are advanced in groups of so many: the columns of a group stay in a core's cache
-// from one operation to the next. Fixed, because the iterations of a group end together.
-constexpr Eigen::Index kGroup = 16;
-
-// An effect with memory, of the model or of a perturbation.
-struct Memory {
+// The sensitivity of the internal variables z of an effect of the model. Their values are in the
+// history of the motion.
+struct StateSensitivity {
   std::shared_ptr<const Effect> effect;
-  Eigen::VectorXd value;        // z of an effect outside the model
-  Eigen::MatrixXd sensitivity;  // dz/dp of an effect of the model, state × perturbations
+  Eigen::MatrixXd value;  // dz/dp, state × perturbations
 };
 
-// The columns of one group.
-struct Group {
-  Eigen::Index first = 0, count = 0;
-
-  template <typename Matrix>
-  auto Of(Matrix& matrix) const {
-    return matrix.middleCols(first, count);
-  }
+// The internal variables of an effect that a perturbation adds to the model.
+struct OutsideState {
+  std::shared_ptr<const Effect> effect;  // null if the perturbation adds none
+  Eigen::VectorXd value;                 // z
 };
 
 bool IsZero(const BlockMatrix& matrix) {
@@ -56,9 +45,7 @@ bool IsZero(const BlockMatrix& matrix) {
 struct TangentLinear::Implementation {
   Model model;
   std::vector<Perturbation> perturbations;
-  HeldComponents held;
-  EliminationOrder order;
-  CholmodFactor factor;
+  TangentSolver solver;
   // The tangent of a step, its skew part, and the parts by velocity, times the rate, and by
   // acceleration.
   BlockMatrix tangent, skew, by_velocity, by_acceleration;
@@ -71,16 +58,14 @@ struct TangentLinear::Implementation {
   // These belong to the step being made: x̃ and ṽ, the right-hand side, the sensitivities at its
   // end.
   Eigen::MatrixXd position_history, velocity_history, right, moved;
-  std::vector<Memory> inside;   // one per effect of the model
-  std::vector<Memory> outside;  // one per perturbation; unused if its effect is in the model
+  std::vector<StateSensitivity> inside;  // one per effect of the model
+  std::vector<OutsideState> outside;     // one per perturbation
 
   Implementation(const Model& the_model, std::vector<Perturbation> the_perturbations,
                  const TangentLinearOptions& the_options)
       : model(the_model),
         perturbations(std::move(the_perturbations)),
-        held(HeldAxes(model)),
-        order(NestedDissection(*model.body->pattern, held.whole_nodes())),
-        factor(*model.body->pattern, order),
+        solver(*model.body->pattern, HeldComponents(HeldAxes(model)), the_options.tolerance),
         tangent(model.body->pattern),
         skew(model.body->pattern),
         by_velocity(model.body->pattern),
@@ -91,11 +76,10 @@ struct TangentLinear::Implementation {
     previous_position = previous_velocity = previous_acceleration = position;
     position_history = velocity_history = right = moved = reaction = position;
     for (const auto& effect : model.effects) {
-      inside.push_back(
-          {effect, {}, Eigen::MatrixXd::Zero(effect->StateSize(*model.body), Count())});
+      inside.push_back({effect, Eigen::MatrixXd::Zero(effect->StateSize(*model.body), Count())});
     }
     for (const Perturbation& perturbation : perturbations) {
-      Memory memory;
+      OutsideState memory;
       if (perturbation.effect != nullptr && IndexInModel(*perturbation.effect) < 0) {
         memory.effect = perturbation.effect;
         memory.value.resize(memory.effect->StateSize(*model.body));
@@ -111,14 +95,6 @@ struct TangentLinear::Implementation {
     for (size_t j = 0; j < model.effects.size(); ++j)
       if (model.effects[j].get() == &effect) return static_cast<int>(j);
     return -1;
-  }
-
-  // Calls visit(group), possibly at the same time for several groups.
-  template <typename Visit>
-  void ForEachGroup(const Visit& visit) const {
-    ParallelBlocks(Count(), kGroup, [&](int64_t begin, int64_t end) {
-      visit(Group{begin, static_cast<Eigen::Index>(end - begin)});
-    });
   }
 
   // ∂f/∂p at the end of the step.
@@ -141,18 +117,24 @@ struct TangentLinear::Implementation {
 
   Kinematics AtOutside(const StepEquation& equation, const StepEquation::EndOfStep& end,
                        Eigen::Index k) const {
-    return {*model.body,      end.position,        end.velocity,
-            end.acceleration, equation.end_time(), equation.time_step(),
-            outside[k].value, ElasticityOf(model), equation.has_inertia()};
+    return {.body = *model.body,
+            .position = end.position,
+            .velocity = end.velocity,
+            .acceleration = end.acceleration,
+            .time = equation.end_time(),
+            .time_step = equation.time_step(),
+            .state = outside[k].value,
+            .elasticity = ElasticityOf(model),
+            .has_inertia = equation.has_inertia()};
   }
 
   // Σ ∂f/∂z ζ over the effects with memory.
   void AddMemoryForces(const StepEquation& equation, const StepEquation::EndOfStep& end) {
     for (size_t j = 0; j < inside.size(); ++j) {
-      const Eigen::MatrixXd& change = inside[j].sensitivity;
+      const Eigen::MatrixXd& change = inside[j].value;
       if (change.rows() == 0 || change.isZero(0)) continue;
       const Kinematics at = equation.At(end, j);
-      ForEachGroup([&](const Group& group) {
+      ForEachGroup(Count(), [&](const ColumnGroup& group) {
         inside[j].effect->AddStateDerivatives(at, group.Of(change), group.Of(right));
       });
     }
@@ -161,16 +143,14 @@ struct TangentLinear::Implementation {
   // dz/dp at the end of the step, from the sensitivities there.
   void AdvanceMemories(const StepEquation& equation, const StepEquation::EndOfStep& end) {
     for (size_t j = 0; j < inside.size(); ++j) {
-      Memory& memory = inside[j];
-      if (memory.sensitivity.rows() == 0) continue;
+      StateSensitivity& memory = inside[j];
+      if (memory.value.rows() == 0) continue;
       const Kinematics at = equation.At(end, j);
-      ForEachGroup([&](const Group& group) {
-        memory.effect->AdvanceStateDerivatives(at, group.Of(position),
-                                               group.Of(memory.sensitivity));
+      ForEachGroup(Count(), [&](const ColumnGroup& group) {
+        memory.effect->AdvanceStateDerivatives(at, group.Of(position), group.Of(memory.value));
         for (Eigen::Index k = group.first; k < group.first + group.count; ++k)
           if (perturbations[k].effect == memory.effect)
-            memory.effect->AddStateByParameter(at, perturbations[k].parameter,
-                                               memory.sensitivity.col(k));
+            memory.effect->AddStateByParameter(at, perturbations[k].parameter, memory.value.col(k));
       });
     }
     ParallelFor(Count(), 1, [&](int64_t k) {
@@ -203,7 +183,7 @@ struct TangentLinear::Implementation {
   }
 
   // The part of the right-hand side that earlier sensitivities make.
-  void AddHistory(const StepEquation& equation, const Group& group) {
+  void AddHistory(const StepEquation& equation, const ColumnGroup& group) {
     const SchemeWeights& weights = equation.weights();
     const double rate = equation.rate();
     using Columns = decltype(group.Of(position));
@@ -232,112 +212,34 @@ struct TangentLinear::Implementation {
       if (force.size() == 0) equation.Residual(at, &force);
       const Eigen::VectorXd change = perturbations[k].grip(equation.end_time(), force);
       Eigen::VectorXd own = Eigen::VectorXd::Zero(change.size());
-      held.Copy(change, &own);
+      solver.held().Copy(change, &own);
       moved.col(k) = own;
     }
   }
 
-  void SubtractGrips(const Group& group) {
+  void SubtractGrips(const ColumnGroup& group) {
     const Eigen::MatrixXd gripped = group.Of(moved);
     if (gripped.isZero(0)) return;
     group.Of(right) -= tangent * gripped;
     if (has_skew) group.Of(right) -= skew * gripped;
   }
 
-  // Solves (tangent + skew) · s = right at the free nodes with the factor of the tangent. No value
-  // if the iteration does not converge.
-  std::optional<Eigen::MatrixXd> SolveByTangent(const Group& group) {
-    Eigen::MatrixXd wanted = group.Of(right);
-    if (!has_skew) return SolveFree(factor, order, held, wanted);
-    held.ClearIn(wanted);
-    // The contribution of the skew part changes little from one step to the next.
-    Eigen::MatrixXd expected = 2 * group.Of(position) - group.Of(previous_position);
-    return Iterate(wanted, wanted - skew * expected,
-                   [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
-                     *residual = skew * (expected - step);
-                     expected.setZero();
-                   });
-  }
-
-  // Solves (tangent + skew) · s = right at the free nodes with the factor of the convexified
-  // approximation.
-  std::optional<Eigen::MatrixXd> SolveByStandIn(const Group& group) {
-    Eigen::MatrixXd wanted = group.Of(right);
-    held.ClearIn(wanted);
-    return Iterate(wanted, wanted, [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
-      *residual -= tangent * step;
-      if (has_skew) *residual -= skew * step;
-    });
-  }
-
-  // Iterative refinement: adds solutions for the residual until it is small relative to the
-  // right-hand side. update(step, &residual) computes the residual after a step.
-  template <typename Update>
-  std::optional<Eigen::MatrixXd> Iterate(const Eigen::MatrixXd& wanted, Eigen::MatrixXd residual,
-                                         const Update& update) {
-    constexpr int kMaxIterations = 60;
-    const Eigen::RowVectorXd small = options.tolerance * wanted.colwise().norm();
-    Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(wanted.rows(), wanted.cols());
-    held.ClearIn(residual);
-    double last = residual.norm();
-    for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-      const Eigen::MatrixXd step = SolveFree(factor, order, held, residual);
-      solution += step;
-      update(step, &residual);
-      held.ClearIn(residual);
-      if ((residual.colwise().norm().array() <= small.array()).all()) return solution;
-      if (!(residual.norm() < 2 * last)) break;
-      last = residual.norm();
-    }
-    return std::nullopt;
-  }
-
-  // Solves (tangent + skew) · s = right at the free nodes with the factor of the whole matrix. No
-  // value if the residual exceeds the tolerance.
-  std::optional<Eigen::MatrixXd> SolveByWhole(const UnsymmetricFactor& whole, const Group& group) {
-    Eigen::MatrixXd wanted = group.Of(right);
-    held.ClearIn(wanted);
-    const Eigen::MatrixXd solution = whole.Solve(wanted);
-    Eigen::MatrixXd residual = wanted - tangent * solution;
-    if (has_skew) residual -= skew * solution;
-    held.ClearIn(residual);
-    const Eigen::RowVectorXd small = options.tolerance * wanted.colwise().norm();
-    if ((residual.colwise().norm().array() <= small.array()).all()) return solution;
-    return std::nullopt;
-  }
-
-  // Adds the solution at the free nodes to `moved`. Uses the factor of the tangent's symmetric part
-  // or, if that is not definite or the iteration does not converge, that of its convexified
-  // approximation. Where that does not converge either, it uses the factor of the whole tangent.
+  // Adds the solution of (tangent + skew) · s = right at the free nodes to `moved`.
   bool Solve(const StepEquation& equation, const Eigen::VectorXd& at) {
-    std::vector<char> solved(static_cast<size_t>((Count() + kGroup - 1) / kGroup), 0);
-    const auto add = [&](const Group& group, const std::optional<Eigen::MatrixXd>& solution) {
-      if (!solution) return;
-      group.Of(moved) += *solution;
-      solved[static_cast<size_t>(group.first / kGroup)] = 1;
-    };
-    if (factor.Factorise(held.Decoupled(tangent)))
-      ForEachGroup([&](const Group& group) { add(group, SolveByTangent(group)); });
-    const auto is_solved = [&] { return std::count(solved.begin(), solved.end(), 0) == 0; };
-    if (is_solved()) return true;
-    BlockMatrix stand_in(model.body->pattern);
-    equation.Tangent(at, /*convexify=*/true, &stand_in);
-    const auto for_unsolved = [&](const auto& solve) {
-      ForEachGroup([&](const Group& group) {
-        if (!solved[static_cast<size_t>(group.first / kGroup)]) add(group, solve(group));
-      });
-    };
-    if (factor.Factorise(held.Decoupled(stand_in)))
-      for_unsolved([&](const Group& group) { return SolveByStandIn(group); });
-    if (is_solved()) return true;
-    const UnsymmetricFactor whole(held, tangent, has_skew ? &skew : nullptr);
-    if (whole.IsUsable())
-      for_unsolved([&](const Group& group) { return SolveByWhole(whole, group); });
-    return is_solved();
+    return solver.AddSolution({tangent, has_skew ? &skew : nullptr, right,
+                               [&](const ColumnGroup& group) -> Eigen::MatrixXd {
+                                 return 2 * group.Of(position) - group.Of(previous_position);
+                               },
+                               [&] {
+                                 BlockMatrix convexified(model.body->pattern);
+                                 equation.Tangent(at, /*convexify=*/true, &convexified);
+                                 return convexified;
+                               }},
+                              &moved);
   }
 
   // Makes the end of the step the current time.
-  void Accept(const StepEquation& equation, const Group& group) {
+  void Accept(const StepEquation& equation, const ColumnGroup& group) {
     const double rate = equation.rate();
     const auto end = group.Of(moved);
     if (options.with_reactions) {
@@ -366,7 +268,7 @@ struct TangentLinear::Implementation {
     PlaceGrips(equation, at);
     Eigen::MatrixXd forces;
     if (options.with_reactions) forces.resizeLike(right);
-    ForEachGroup([&](const Group& group) {
+    ForEachGroup(Count(), [&](const ColumnGroup& group) {
       AddHistory(equation, group);
       if (options.with_reactions) group.Of(forces) = group.Of(right);
       SubtractGrips(group);
@@ -381,7 +283,7 @@ struct TangentLinear::Implementation {
       return summary;
     }
     if (options.with_reactions) reaction = -forces;
-    ForEachGroup([&](const Group& group) { Accept(equation, group); });
+    ForEachGroup(Count(), [&](const ColumnGroup& group) { Accept(equation, group); });
     AdvanceMemories(equation, end);
     summary.status = TangentLinearSummary::Status::kSolved;
     return summary;

@@ -13,8 +13,7 @@
 // null value, the result is the response of the motion to a small amount of the effect, so that all
 // effects of a catalogue can be tried along one trajectory.
 //
-// If a tangent is not symmetric (effect.h), its symmetric part is factorised and the skew-symmetric
-// part is treated by iterative refinement until its residual is negligible.
+// A tangent that is not symmetric or not definite is solved as tangent_solver.h describes.
 #ifndef LACUNA_FEM_TANGENT_LINEAR_H_
 #define LACUNA_FEM_TANGENT_LINEAR_H_
 
@@ -54,11 +53,13 @@ struct TangentLinearOptions {
   bool with_reactions = false;  // whether reaction() is computed, for a product with the tangent
                                 // per step
   // The linear systems of models whose tangent is not symmetric are solved by iteration, to this
-  // residual of each perturbation relative to its right-hand side. Larger: fewer iterations.
+  // residual of each perturbation relative to its right-hand side. Larger values take fewer
+  // iterations.
   double tolerance = 1e-7;
 };
 
-// Not thread-safe: one object per simulation.
+// Keeps a copy of the model, which shares body and effects, and of the perturbations. Not
+// thread-safe: one object per simulation.
 class TangentLinear {
  public:
   // All sensitivities are 0 at first.

@@ -20,6 +20,9 @@ namespace lacuna {
 // three or four numbers and keeps scalars.
 typedef double Two __attribute__((vector_size(2 * sizeof(double)), may_alias));
 typedef double Four __attribute__((vector_size(4 * sizeof(double)), may_alias));
+// Four numbers that are read from any address.
+typedef double UnalignedFour
+    __attribute__((vector_size(4 * sizeof(double)), may_alias, aligned(sizeof(double))));
 
 // Two, three or four numbers from any address, the others 0. A register that is filled number by
 // number goes through memory, which takes longer than what is computed with it. The result is not

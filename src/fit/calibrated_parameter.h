@@ -36,7 +36,8 @@ struct CalibratedParameter {
 // such as `lacuna add` writes, does not count: the model nearly degenerates there too.
 inline void SetBounds(double min, double max, const Bounds& of_card,
                       CalibratedParameter* parameter) {
-  constexpr double kClose = 1e-3;  // of the distance of the start; larger: more bounds stay open
+  // As a fraction of the distance of the start. With a larger value, more bounds stay open.
+  constexpr double kClose = 1e-3;
   const auto is_close = [&](double bound, double open) {
     return std::abs(bound - open) <= kClose * std::abs(parameter->start - open);
   };

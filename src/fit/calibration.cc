@@ -20,8 +20,8 @@ constexpr double kDead = 1e-6;
 // A parameter is at its bound within this share of a typical change, plus of its own value where it
 // is fitted on a linear scale.
 constexpr double kAtBoundWithin = 1e-6;
-// Errors with a longer memory cannot be distinguished from motion.
-constexpr double kLongestMemory = 0.9;
+// Errors that persist longer cannot be distinguished from motion.
+constexpr double kLargestAutocorrelation = 0.9;
 
 // The inverse of a positive semi-definite matrix. Parameters with a component in its null space get
 // an infinite variance on the diagonal.
@@ -49,24 +49,27 @@ Eigen::MatrixXd GeneralisedCovariance(const Eigen::MatrixXd& information) {
   return covariance;
 }
 
-// The lag-one autocorrelation of the residual (Calibration::memory).
-double MemoryOf(const Prediction& prediction) {
+// The lag-one autocorrelation of the residual (Calibration::autocorrelation).
+double AutocorrelationOf(const ResidualEvaluation& prediction) {
   double product = 0;
   for (size_t row = 0; row < prediction.before.size(); ++row)
     if (prediction.before[row] >= 0)
       product += prediction.residual[static_cast<Eigen::Index>(row)] *
                  prediction.residual[prediction.before[row]];
-  return product > 0 ? std::min(product / prediction.residual.squaredNorm(), kLongestMemory) : 0;
+  return product > 0
+             ? std::min(product / prediction.residual.squaredNorm(), kLargestAutocorrelation)
+             : 0;
 }
 
 // Jᵀ R J − JᵀJ. The row of an earlier frame must precede those of later frames.
-Eigen::MatrixXd AddedByMemory(const Eigen::MatrixXd& J, const std::vector<Eigen::Index>& before,
-                              double memory) {
+Eigen::MatrixXd AddedByAutocorrelation(const Eigen::MatrixXd& J,
+                                       const std::vector<Eigen::Index>& before,
+                                       double autocorrelation) {
   Eigen::MatrixXd past = Eigen::MatrixXd::Zero(J.rows(), J.cols());  // Σ_{j<i} a^(i−j) J_j
   for (size_t row = 0; row < before.size(); ++row)
     if (before[row] >= 0)
       past.row(static_cast<Eigen::Index>(row)) =
-          memory * (past.row(before[row]) + J.row(before[row]));
+          autocorrelation * (past.row(before[row]) + J.row(before[row]));
   const Eigen::MatrixXd half = J.transpose() * past;
   return half + half.transpose();
 }
@@ -86,76 +89,94 @@ void SetInterval(const CalibratedParameter& parameter, double centre, double dev
   estimate->high = std::min(parameter.max, FromFree(parameter, free + reach));
 }
 
-// Fills in covariance and estimates at the solution, where J = ∂r/∂φ.
-void Estimate(const std::vector<CalibratedParameter>& parameters, const Prediction& last,
-              const Eigen::MatrixXd& J, Calibration* calibration) {
-  const Eigen::Index count = J.cols();
-  const double variance = calibration->inflation * calibration->inflation;
-  const Eigen::MatrixXd information = J.transpose() * J;
-  const Eigen::MatrixXd more = AddedByMemory(J, last.before, calibration->memory);
+// Sets the correlation of parameter k with the parameter with which it is correlated most.
+// Parameters without influence have none.
+void SetCorrelation(const std::vector<CalibratedParameter>& parameters,
+                    const Eigen::MatrixXd& information, const Eigen::MatrixXd& covariance,
+                    Eigen::Index k, ParameterEstimate* estimate) {
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    const double product = information(i, i) * information(k, k);
+    if (i == k || !(product > 0)) continue;
+    const double correlation = covariance(i, k) / std::sqrt(covariance(i, i) * covariance(k, k));
+    if (std::abs(correlation) > std::abs(estimate->correlation)) {
+      estimate->correlation = correlation;
+      estimate->traded_with = parameters[i].name;
+    }
+  }
+}
+
+// Whether a value lies on one of the bounds, on the scale on which the parameter is fitted and to
+// within the precision of the search.
+bool IsAtBound(const CalibratedParameter& parameter, double value) {
+  const double free = ToFree(parameter, value);
+  const double above_min = parameter.log_scale && parameter.min <= 0
+                               ? std::numeric_limits<double>::infinity()
+                               : free - ToFree(parameter, parameter.min);
+  const double below_max = ToFree(parameter, parameter.max) - free;
+  const double close =
+      kAtBoundWithin * (parameter.typical + (parameter.log_scale ? 0 : std::abs(value)));
+  return above_min < close || below_max < close;
+}
+
+// How well the data determine a parameter. `influence`: how far a typical change of it moves the
+// residual vector, in standard deviations.
+Determination DeterminationOf(const CalibratedParameter& parameter,
+                              const ParameterEstimate& estimate, double influence) {
+  if (influence < kDead) return Determination::kDead;
+  if (IsAtBound(parameter, estimate.value)) return Determination::kAtBound;
+  if (influence < kNoticeable) return Determination::kFlat;
+  if (kNoticeable * estimate.deviation > parameter.typical) return Determination::kTradedOff;
+  return Determination::kPinnedDown;
+}
+
+// The information JᵀJ/v of the data plus the precisions of the priors.
+Eigen::MatrixXd WithPriors(const std::vector<CalibratedParameter>& parameters,
+                           const Eigen::MatrixXd& information, double variance) {
   Eigen::MatrixXd with_prior = information / variance;
-  for (Eigen::Index k = 0; k < count; ++k) {
+  for (Eigen::Index k = 0; k < with_prior.rows(); ++k) {
     const double deviation = parameters[k].prior_deviation;
     if (std::isfinite(deviation)) with_prior(k, k) += 1 / (deviation * deviation);
   }
+  return with_prior;
+}
+
+// Fills in covariance and estimates at the solution, where J = ∂r/∂φ.
+void Estimate(const std::vector<CalibratedParameter>& parameters, const ResidualEvaluation& last,
+              const Eigen::MatrixXd& J, Calibration* calibration) {
+  const double variance = calibration->inflation * calibration->inflation;
+  const Eigen::MatrixXd information = J.transpose() * J;
+  const Eigen::MatrixXd more = AddedByAutocorrelation(J, last.before, calibration->autocorrelation);
   const Eigen::MatrixXd data_only = variance * Widened(GeneralisedCovariance(information), more);
-  calibration->covariance = Widened(GeneralisedCovariance(with_prior), more / variance);
-  for (Eigen::Index k = 0; k < count; ++k) {
+  calibration->covariance = Widened(
+      GeneralisedCovariance(WithPriors(parameters, information, variance)), more / variance);
+  for (Eigen::Index k = 0; k < J.cols(); ++k) {
     const CalibratedParameter& parameter = parameters[k];
-    const double value = calibration->parameters[k];
     ParameterEstimate estimate;
-    estimate.value = value;
+    estimate.value = calibration->parameters[k];
     estimate.deviation = std::sqrt(data_only(k, k));
     estimate.posterior_deviation = std::sqrt(calibration->covariance(k, k));
-    SetInterval(parameter, value, estimate.posterior_deviation, &estimate);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const double product = information(i, i) * information(k, k);
-      if (i == k || !(product > 0)) continue;
-      const double correlation =
-          calibration->covariance(i, k) /
-          std::sqrt(calibration->covariance(i, i) * calibration->covariance(k, k));
-      if (std::abs(correlation) > std::abs(estimate.correlation)) {
-        estimate.correlation = correlation;
-        estimate.traded_with = parameters[i].name;
-      }
-    }
-    // How far a typical change moves the residual vector, in standard deviations.
+    SetInterval(parameter, estimate.value, estimate.posterior_deviation, &estimate);
+    SetCorrelation(parameters, information, calibration->covariance, k, &estimate);
     const double influence = J.col(k).norm() * parameter.typical / calibration->inflation;
-    // How near a bound is, on the scale on which the parameter is fitted.
-    const double free = ToFree(parameter, value);
-    const double above_min = parameter.log_scale && parameter.min <= 0
-                                 ? std::numeric_limits<double>::infinity()
-                                 : free - ToFree(parameter, parameter.min);
-    const double below_max = ToFree(parameter, parameter.max) - free;
-    const double close =
-        kAtBoundWithin * (parameter.typical + (parameter.log_scale ? 0 : std::abs(value)));
-    if (influence < kDead) {
-      estimate.determination = Determination::kDead;
-    } else if (above_min < close || below_max < close) {
-      estimate.determination = Determination::kAtBound;
-    } else if (influence < kNoticeable) {
-      estimate.determination = Determination::kFlat;
-    } else if (kNoticeable * estimate.deviation > parameter.typical) {
-      estimate.determination = Determination::kTradedOff;
-    }
+    estimate.determination = DeterminationOf(parameter, estimate, influence);
     calibration->estimates.push_back(estimate);
   }
 }
 
 }  // namespace
 
-void CountModelErrors(const CalibratedParameter& parameter, double centre, double deviation,
-                      ParameterEstimate* estimate) {
+void WidenIntervalByModelErrors(const CalibratedParameter& parameter, double centre,
+                                double deviation, ParameterEstimate* estimate) {
   SetInterval(parameter, centre, std::hypot(estimate->posterior_deviation, deviation), estimate);
 }
 
-double RootMeanSquare(const Prediction& prediction) {
+double RootMeanSquare(const ResidualEvaluation& prediction) {
   const Eigen::Index observed = prediction.Observed();
   return observed > 0 ? prediction.residual.norm() / std::sqrt(static_cast<double>(observed)) : 0;
 }
 
 Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
-                      const PredictionFunction& predict, const CalibrationOptions& options) {
+                      const ResidualFunction& predict, const CalibrationOptions& options) {
   const int count = static_cast<int>(parameters.size());
   Calibration calibration;
   calibration.parameters.resize(count);
@@ -168,7 +189,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     CHECK_GT(parameter.typical, 0) << parameter.name;
     calibration.parameters[k] = parameter.start;
   }
-  Prediction last = predict(calibration.parameters, /*with_jacobian=*/count > 0);
+  ResidualEvaluation last = predict(calibration.parameters, /*with_jacobian=*/count > 0);
   calibration.predictions = 1;
   if (!last.usable) {
     calibration.message = "no prediction at the start: " + last.message;
@@ -190,7 +211,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
   }
   calibration.rms = RootMeanSquare(last);
   calibration.inflation = std::max(1.0, calibration.rms);
-  calibration.memory = MemoryOf(last);
+  calibration.autocorrelation = AutocorrelationOf(last);
   if (count > 0) {
     Eigen::MatrixXd J = last.jacobian;
     for (int k = 0; k < count; ++k)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -152,9 +153,8 @@ class ReducedObservationCost : public ceres::CostFunction {
   ReducedObservationCost(const BalancedMotion& motion, const Observations& observations,
                          Eigen::Index j, Eigen::Index unknowns)
       : motion_(motion),
-        node_(observations.node.col(j)),
-        weight_(observations.weight.col(j)),
-        target_(observations.target.col(j)),
+        observations_(observations),
+        j_(j),
         rows_(WhitenedDirections(observations, j)) {
     set_num_residuals(static_cast<int>(rows_.rows()));
     mutable_parameter_block_sizes()->push_back(static_cast<int>(unknowns));
@@ -163,25 +163,20 @@ class ReducedObservationCost : public ceres::CostFunction {
   bool Evaluate(double const* const* /*parameters*/, double* residuals,
                 double** jacobians) const override {
     if (!motion_.is_balanced()) return false;
-    Eigen::Vector3d deviation = -target_;
-    for (int a = 0; a < 3; ++a)
-      deviation += weight_[a] * motion_.position().segment<3>(3 * node_[a]);
+    const Eigen::Vector3d deviation = Deviation(observations_, j_, motion_.position());
     Eigen::Map<Eigen::VectorXd>(residuals, rows_.rows()) = rows_ * deviation;
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    const Eigen::MatrixXd& response = motion_.derivative().position;
-    Eigen::MatrixXd derivative = Eigen::MatrixXd::Zero(3, response.cols());
-    for (int a = 0; a < 3; ++a) {
-      if (weight_[a] != 0) derivative += weight_[a] * response.middleRows(3 * node_[a], 3);
-    }
+    const Eigen::MatrixXd derivative =
+        DeviationDerivative(observations_, j_, motion_.derivative().position);
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-        jacobians[0], rows_.rows(), response.cols()) = rows_ * derivative;
+        jacobians[0], rows_.rows(), derivative.cols()) = rows_ * derivative;
     return true;
   }
 
  private:
   const BalancedMotion& motion_;
-  Eigen::Vector3i node_;
-  Eigen::Vector3d weight_, target_;
+  const Observations& observations_;
+  Eigen::Index j_;
   Eigen::Matrix<double, Eigen::Dynamic, 3> rows_;
 };
 
@@ -227,10 +222,38 @@ class StopWhereImmaterial : public ceres::IterationCallback {
   double decrease_;
 };
 
+// The whitened residuals of these blocks without their loss function; nothing where the balance
+// cannot be found.
+std::optional<std::vector<double>> ResidualsOf(const std::vector<ceres::ResidualBlockId>& blocks,
+                                               ceres::Problem* problem) {
+  ceres::Problem::EvaluateOptions options;
+  options.residual_blocks = blocks;
+  options.apply_loss_function = false;
+  std::vector<double> residuals;
+  if (!problem->Evaluate(options, nullptr, &residuals, nullptr, nullptr)) return std::nullopt;
+  if (blocks.empty()) residuals.clear();  // to Ceres, no blocks means all of them
+  return residuals;
+}
+
 double RootMeanSquare(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value * value;
   return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+// Sets the status of a fit whose search has a usable solution.
+void SetStatus(const ceres::Solver::Summary& summary, ForceFit* fit) {
+  if (summary.termination_type == ceres::CONVERGENCE ||
+      summary.termination_type == ceres::USER_SUCCESS)
+    fit->status = ForceFit::Status::kConverged;
+  if (summary.termination_type == ceres::NO_CONVERGENCE)
+    fit->status = ForceFit::Status::kEndedEarly;
+  // Ceres takes steps that became short because no trial had a stable balance for convergence.
+  const ceres::IterationSummary& last = summary.iterations.back();
+  if (!last.step_is_successful && last.trust_region_radius < kSmallRadius) {
+    fit->status = ForceFit::Status::kEndedEarly;
+    fit->message = "no lower cost with a stable balance was found nearby";
+  }
 }
 
 }  // namespace
@@ -258,6 +281,43 @@ struct CoefficientFitter::Implementation {
     motion.StartFrom(start, unknowns);
   }
 
+  std::vector<ceres::ResidualBlockId> AddObservations(const Observations& observations,
+                                                      const ForceFitOptions& options,
+                                                      ceres::Problem* problem) {
+    std::vector<ceres::ResidualBlockId> observed;
+    for (Eigen::Index j = 0; j < observations.Count(); ++j) {
+      ceres::LossFunction* loss =
+          options.robust_threshold > 0 ? new ceres::HuberLoss(options.robust_threshold) : nullptr;
+      observed.push_back(problem->AddResidualBlock(
+          new ReducedObservationCost(motion, observations, j, unknowns.size()), loss,
+          unknowns.data()));
+    }
+    return observed;
+  }
+
+  // Moves the unknowns to the minimum of the cost, as far as it is found.
+  ceres::Solver::Summary Search(const ForceFitOptions& options, ceres::Problem* problem) {
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    solver.max_num_iterations = options.max_iterations;
+    solver.function_tolerance = options.function_tolerance;
+    solver.initial_trust_region_radius = trust_region_radius;
+    solver.num_threads = 1;  // Ceres sums over threads in no fixed order
+    solver.logging_type = ceres::SILENT;
+    const std::unique_ptr<ceres::IterationCallback> stop = StopOnInterrupt();
+    StopWhereImmaterial stop_where_immaterial(options.immaterial_decrease);
+    solver.callbacks = {stop.get(), &stop_where_immaterial};
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, problem, &summary);
+    ThrowIfInterrupted();
+    if (!summary.iterations.empty()) {
+      trust_region_radius =
+          std::clamp(kTrustRegionGrowth * summary.iterations.back().trust_region_radius, 1.0,
+                     kTrustRegionRadius);
+    }
+    return summary;
+  }
+
   const StepEquation& equation;
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& basis;
   Eigen::VectorXd start_coefficients;
@@ -274,81 +334,44 @@ CoefficientFitter::CoefficientFitter(const Model& model, const StepEquation& equ
                                      const Eigen::VectorXd& coefficients)
     : implementation_(std::make_unique<Implementation>(
           model, equation, force_model, std::move(control), position, coefficients)) {
-  for (const char free : force_model.free) CHECK(!free);
+  CHECK(!force_model.HasFreeNodes());
 }
 
 CoefficientFitter::~CoefficientFitter() = default;
 
 ForceFit CoefficientFitter::Fit(const Observations& observations, const ForceFitPrior& prior,
                                 const ForceFitOptions& options) {
-  BalancedMotion& motion = implementation_->motion;
-  Eigen::VectorXd& unknowns = implementation_->unknowns;
-  const Eigen::Index count = unknowns.size();
+  Implementation& kept = *implementation_;
+  BalancedMotion& motion = kept.motion;
   const int factorisations_before = motion.factorisations();
-  implementation_->EnsureStart();
+  kept.EnsureStart();
   ForceFit fit;
   fit.multiplier = Eigen::VectorXd::Zero(motion.position().size());
 
   ceres::Problem::Options problem_options;
   problem_options.evaluation_callback = &motion;
   ceres::Problem problem(problem_options);
-  std::vector<ceres::ResidualBlockId> observed;
-  for (Eigen::Index j = 0; j < observations.Count(); ++j) {
-    ceres::LossFunction* loss =
-        options.robust_threshold > 0 ? new ceres::HuberLoss(options.robust_threshold) : nullptr;
-    observed.push_back(problem.AddResidualBlock(
-        new ReducedObservationCost(motion, observations, j, count), loss, unknowns.data()));
-  }
+  const std::vector<ceres::ResidualBlockId> observed =
+      kept.AddObservations(observations, options, &problem);
   problem.AddResidualBlock(new CoefficientPriorCost(motion, prior.coefficients), nullptr,
-                           unknowns.data());
+                           kept.unknowns.data());
+  const ceres::Solver::Summary summary = kept.Search(options, &problem);
 
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = options.function_tolerance;
-  solver.initial_trust_region_radius = implementation_->trust_region_radius;
-  solver.num_threads = 1;  // Ceres sums over threads in no fixed order
-  solver.logging_type = ceres::SILENT;
-  const std::unique_ptr<ceres::IterationCallback> stop = StopOnInterrupt();
-  StopWhereImmaterial stop_where_immaterial(options.immaterial_decrease);
-  solver.callbacks = {stop.get(), &stop_where_immaterial};
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  ThrowIfInterrupted();
-
-  if (!summary.iterations.empty()) {
-    implementation_->trust_region_radius =
-        std::clamp(kTrustRegionGrowth * summary.iterations.back().trust_region_radius, 1.0,
-                   kTrustRegionRadius);
-  }
   fit.factorisations = motion.factorisations() - factorisations_before;
   fit.initial_cost = summary.initial_cost;
   fit.final_cost = summary.final_cost;
   fit.message = summary.message;
   fit.status = ForceFit::Status::kNoConvergence;
   if (!summary.IsSolutionUsable()) return fit;
-
-  ceres::Problem::EvaluateOptions observed_only;
-  observed_only.residual_blocks = observed;
-  observed_only.apply_loss_function = false;
-  std::vector<double> residuals;
   // This evaluation also returns the motion to the best unknowns, which need not be the last ones
   // that were tried.
-  if (!problem.Evaluate(observed_only, nullptr, &residuals, nullptr, nullptr)) return fit;
-  fit.weighted_rms = RootMeanSquare(residuals);
+  const std::optional<std::vector<double>> residuals = ResidualsOf(observed, &problem);
+  if (!residuals) return fit;
+  fit.weighted_rms = RootMeanSquare(*residuals);
   fit.position = motion.position();
   fit.coefficients = motion.Coefficients();
-  fit.force = implementation_->basis * fit.coefficients;
-  if (summary.termination_type == ceres::CONVERGENCE ||
-      summary.termination_type == ceres::USER_SUCCESS)
-    fit.status = ForceFit::Status::kConverged;
-  if (summary.termination_type == ceres::NO_CONVERGENCE) fit.status = ForceFit::Status::kEndedEarly;
-  // Ceres takes steps that became short because no trial had a stable balance for convergence.
-  const ceres::IterationSummary& last = summary.iterations.back();
-  if (!last.step_is_successful && last.trust_region_radius < kSmallRadius) {
-    fit.status = ForceFit::Status::kEndedEarly;
-    fit.message = "no lower cost with a stable balance was found nearby";
-  }
+  fit.force = kept.basis * fit.coefficients;
+  SetStatus(summary, &fit);
   return fit;
 }
 

@@ -53,8 +53,9 @@ struct ForceFit {
   Eigen::VectorXd multiplier;    // 3n, N: for the balance constraint, if positions are unknowns
   int factorisations = 0;
   double initial_cost = 0, final_cost = 0;
-  double weighted_rms = 0;  // rms residual of the observations in standard deviations
-  double imbalance = 0;     // rms of the forces that the model does not allow, as a length, m
+  // The rms residual of the observations in standard deviations; 0 without any.
+  double weighted_rms = 0;
+  double imbalance = 0;  // rms of the forces that the model does not allow, as a length, m
   bool IsUsable() const { return status == Status::kConverged || status == Status::kEndedEarly; }
 };
 

@@ -34,8 +34,8 @@ Eigen::MatrixXd PivotedCholesky(const Eigen::Matrix3Xd& points, double length, d
 
 }  // namespace
 
-bool ForceModel::HasUnknowns() const {
-  return CoefficientCount() > 0 || std::any_of(free.begin(), free.end(), [](char f) { return f; });
+bool ForceModel::HasFreeNodes() const {
+  return std::any_of(free.begin(), free.end(), [](char is_free) { return is_free; });
 }
 
 ForceModel NoForces(const Body& body) {
@@ -93,7 +93,7 @@ ForceModel SmoothForces(const Body& body, const Eigen::VectorXi& nodes, double l
 }
 
 ForceModel HoldNetForceAndTorque(const Body& body, const ForceModel& model) {
-  for (const char free : model.free) CHECK(!free);
+  CHECK(!model.HasFreeNodes());
   const Eigen::Index count = model.CoefficientCount();
   if (count == 0) return model;
   const Eigen::Map<const Eigen::VectorXd> rest(body.mesh.nodes.data(), body.mesh.nodes.size());

@@ -24,7 +24,8 @@ struct ForceModel {
   Eigen::SparseMatrix<double, Eigen::RowMajor> basis;
 
   Eigen::Index CoefficientCount() const { return basis.cols(); }
-  bool HasUnknowns() const;
+  bool HasFreeNodes() const;
+  bool HasUnknowns() const { return CoefficientCount() > 0 || HasFreeNodes(); }
 };
 
 // No unknown forces: the effects and the grips alone must explain the motion.

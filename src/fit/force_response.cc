@@ -49,17 +49,9 @@ Eigen::MatrixXd CoefficientCovariance(const ForceResponse& response,
   const Eigen::Index count = response.sensitivity.cols();
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(count, count);
   for (Eigen::Index j = 0; j < observations.Count(); ++j) {
-    Eigen::Vector3d deviation = -observations.target.col(j);
-    Eigen::MatrixXd derivative = Eigen::MatrixXd::Zero(3, count);
-    for (int a = 0; a < 3; ++a) {
-      const double weight = observations.weight(a, j);
-      if (weight == 0) continue;
-      const Eigen::Index row = 3 * observations.node(a, j);
-      deviation += weight * position.segment<3>(row);
-      derivative += weight * response.sensitivity.middleRows(row, 3);
-    }
+    const Eigen::MatrixXd derivative = DeviationDerivative(observations, j, response.sensitivity);
     const auto directions = WhitenedDirections(observations, j);
-    const double length = (directions * deviation).norm();
+    const double length = (directions * Deviation(observations, j, position)).norm();
     const double loss_weight =
         robust_threshold > 0 && length > robust_threshold ? robust_threshold / length : 1;
     const Eigen::MatrixXd jacobian = std::sqrt(loss_weight) * (directions * derivative);

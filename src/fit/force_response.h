@@ -27,7 +27,7 @@ struct ForceResponse {
 // incomplete.
 ForceResponse RespondToForces(const BlockMatrix& tangent, const ForceModel& force_model,
                               LinearSolver* solver);
-// The same at a balanced `position` (3n, m).
+// RespondToForces() with the tangent of `equation` at a balanced `position` (3n, m).
 ForceResponse RespondToForces(const Model& model, const StepEquation& equation,
                               const ForceModel& force_model, const Eigen::VectorXd& position);
 

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <optional>
+#include <utility>
 
 #include "search/evaluator.h"
 
@@ -16,8 +18,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kMargin =
-    1e-3;  // least distance of a start from a bound, as a fraction of the range
+// The least distance of a start from a bound, as a fraction of the range.
+constexpr double kMargin = 1e-3;
 
 // The objective as a function of the angles, scaled so that the first step of Ceres has the
 // requested length. An exception of the objective is stored here until Ceres has returned.
@@ -74,7 +76,7 @@ class OverAngles : public ceres::FirstOrderFunction {
  private:
   VectorXd PointAt(const VectorXd& t) const {
     const VectorXd x = evaluator_.lower().array() + range_.array() * 0.5 * (1 - t.array().cos());
-    return x.cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper());
+    return evaluator_.Within(x);
   }
 
   bool Differentiate(const VectorXd& x, double value, VectorXd* slope) const {
@@ -123,10 +125,7 @@ SearchResult MinimiseByGradient(const SearchProblem& problem, const SearchContro
   Evaluator evaluator(problem, control,
                       fmt::format("gradient {:a} {:a} {:a}", options.initial_radius,
                                   options.final_radius, options.difference));
-  if (evaluator.n() == 0) {
-    evaluator.At(evaluator.start());
-    return evaluator.Finish(SearchStatus::kAllFixed);
-  }
+  if (std::optional<SearchResult> only = evaluator.FinishIfAllFixed()) return *std::move(only);
   CHECK(evaluator.lower().allFinite() && evaluator.upper().allFinite());
   auto* function = new OverAngles(&evaluator, options);
   const ceres::GradientProblem angles(function);  // owns the function

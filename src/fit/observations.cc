@@ -5,16 +5,18 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/nearest.h"
+
 namespace lacuna {
 namespace {
 
 constexpr double kMinNormalAgreement = 0.5;  // cos 60°: beyond it, the point is on another side
 constexpr double kSmoothAgreement = 0.985;   // cos 10°: beyond it, there is an edge
 
-Observations Allocate(Eigen::Index count) {
+Observations Allocate(Eigen::Index nodes, Eigen::Index count) {
   Observations observations;
-  observations.node.resize(3, count);
-  observations.weight.resize(3, count);
+  observations.node.resize(nodes, count);
+  observations.weight.resize(nodes, count);
   observations.target.resize(3, count);
   observations.normal.resize(3, count);
   observations.normal_sigma.resize(count);
@@ -23,7 +25,7 @@ Observations Allocate(Eigen::Index count) {
 }
 
 Observations Keep(const Observations& all, const std::vector<Eigen::Index>& kept) {
-  Observations observations = Allocate(static_cast<Eigen::Index>(kept.size()));
+  Observations observations = Allocate(all.node.rows(), static_cast<Eigen::Index>(kept.size()));
   for (Eigen::Index j = 0; j < observations.Count(); ++j) {
     observations.node.col(j) = all.node.col(kept[j]);
     observations.weight.col(j) = all.weight.col(kept[j]);
@@ -35,12 +37,10 @@ Observations Keep(const Observations& all, const std::vector<Eigen::Index>& kept
   return observations;
 }
 
-// Sets the mesh nodes and the weights of points that are given on triangles of the boundary. Those
-// of points without a triangle are left as they are.
+// Sets the mesh nodes and the weights of points that are given on triangles of the boundary.
 void AttachToTriangles(const BoundarySurface& boundary, const SurfaceHits& hits,
                        Observations* observations) {
   for (Eigen::Index j = 0; j < hits.triangle.size(); ++j) {
-    if (hits.triangle[j] < 0) continue;
     const Eigen::Vector3i triangle = boundary.surface.triangles.col(hits.triangle[j]);
     for (int a = 0; a < 3; ++a) observations->node(a, j) = boundary.node[triangle[a]];
     observations->weight.col(j) = hits.barycentric.col(j);
@@ -85,8 +85,27 @@ Eigen::Matrix<double, Eigen::Dynamic, 3> WhitenedDirections(const Observations& 
   return rows;
 }
 
+Eigen::Vector3d Deviation(const Observations& observations, Eigen::Index j,
+                          const Eigen::VectorXd& x) {
+  Eigen::Vector3d deviation = -observations.target.col(j);
+  for (Eigen::Index a = 0; a < observations.node.rows(); ++a)
+    deviation += observations.weight(a, j) * x.segment<3>(3 * observations.node(a, j));
+  return deviation;
+}
+
+Eigen::MatrixXd DeviationDerivative(const Observations& observations, Eigen::Index j,
+                                    const Eigen::MatrixXd& x_by_p) {
+  Eigen::MatrixXd derivative = Eigen::MatrixXd::Zero(3, x_by_p.cols());
+  for (Eigen::Index a = 0; a < observations.node.rows(); ++a) {
+    const double weight = observations.weight(a, j);
+    if (weight != 0) derivative += weight * x_by_p.middleRows(3 * observations.node(a, j), 3);
+  }
+  return derivative;
+}
+
 Observations Concatenate(const Observations& first, const Observations& second) {
-  Observations both = Allocate(first.Count() + second.Count());
+  CHECK_EQ(first.node.rows(), second.node.rows());
+  Observations both = Allocate(first.node.rows(), first.Count() + second.Count());
   both.node << first.node, second.node;
   both.weight << first.weight, second.weight;
   both.target << first.target, second.target;
@@ -99,12 +118,13 @@ Observations Concatenate(const Observations& first, const Observations& second) 
 Observations ObserveScan(const BoundarySurface& boundary, const Eigen::Matrix3Xd& x,
                          const PointCloud& scan, double sigma, double reach) {
   CHECK_GT(sigma, 0);
+  CHECK(scan.points.allFinite());  // such a point has no nearest one
   const TriMesh surface = BoundaryAt(boundary, x);
   const SurfaceHits hits = SurfaceSearch(surface).Nearest(scan.points);
   const Eigen::Matrix3Xd face_normals = TriangleNormals(surface);
   const Eigen::Matrix3Xd vertex_normals = VertexNormals(surface);
 
-  Observations all = Allocate(scan.Size());
+  Observations all = Allocate(3, scan.Size());
   AttachToTriangles(boundary, hits, &all);
   std::vector<Eigen::Index> kept;
   for (Eigen::Index j = 0; j < scan.Size(); ++j) {
@@ -130,7 +150,7 @@ Observations ObserveVertices(const BoundarySurface& boundary, const Eigen::Matri
                              const Eigen::Matrix3Xd& target, const Eigen::VectorXd& normal_sigma,
                              const Eigen::VectorXd& tangent_sigma) {
   CHECK_EQ(target.cols(), boundary.node.size());
-  Observations all = Allocate(target.cols());
+  Observations all = Allocate(3, target.cols());
   all.normal = VertexNormals(BoundaryAt(boundary, x));
   all.target = target;
   all.normal_sigma = normal_sigma;
@@ -145,18 +165,20 @@ Observations ObserveVertices(const BoundarySurface& boundary, const Eigen::Matri
   return Keep(all, kept);
 }
 
-Observations ObserveMarkers(const BoundarySurface& boundary, const SurfaceHits& at_rest,
+Observations ObserveMarkers(const TetMesh& mesh, const Embedding& at_rest,
                             const Eigen::Matrix3Xd& target, double sigma) {
-  CHECK_EQ(target.cols(), at_rest.triangle.size());
-  Observations all = Allocate(target.cols());
-  AttachToTriangles(boundary, at_rest, &all);
+  CHECK_EQ(target.cols(), at_rest.tet.size());
+  Observations all = Allocate(mesh.tets.rows(), target.cols());
+  all.weight = at_rest.weight;
   all.target = target;
   all.normal = Eigen::Vector3d::UnitX().replicate(1, target.cols());
   all.normal_sigma.setConstant(sigma);
   all.tangent_sigma.setConstant(sigma);
   std::vector<Eigen::Index> kept;
   for (Eigen::Index j = 0; j < target.cols(); ++j) {
-    if (at_rest.triangle[j] >= 0 && target.col(j).allFinite()) kept.push_back(j);
+    if (at_rest.tet[j] < 0 || !target.col(j).allFinite()) continue;
+    all.node.col(j) = mesh.tets.col(at_rest.tet[j]);
+    kept.push_back(j);
   }
   return Keep(all, kept);
 }

@@ -46,13 +46,12 @@ class AssembledStep : public ceres::EvaluationCallback {
 // The whitened residual W (N x − y) of one observation as a function of its nodes.
 class ObservationCost : public ceres::CostFunction {
  public:
-  // `nodes`: the number of the observation's nodes with a weight; they come first.
-  ObservationCost(const Observations& observations, Eigen::Index j, int nodes)
+  ObservationCost(const Observations& observations, Eigen::Index j)
       : target_(observations.target.col(j)),
         weights_(observations.weight.col(j)),
         rows_(WhitenedDirections(observations, j)) {
     set_num_residuals(static_cast<int>(rows_.rows()));
-    mutable_parameter_block_sizes()->assign(nodes, 3);
+    mutable_parameter_block_sizes()->assign(static_cast<size_t>(observations.NodeCount(j)), 3);
   }
 
   bool Evaluate(double const* const* parameters, double* residuals,
@@ -73,7 +72,7 @@ class ObservationCost : public ceres::CostFunction {
  private:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
   Eigen::Vector3d target_;
-  Eigen::Vector3d weights_;
+  Eigen::VectorXd weights_;
   Rows rows_;
 };
 
@@ -154,11 +153,6 @@ Eigen::VectorXd NodeStiffness(const StepEquation& equation, const Body& body,
   return stiffness;
 }
 
-// The number of nodes of an observation that have a weight; they come first.
-int WeightedNodes(const Observations& observations, Eigen::Index j) {
-  return observations.node(1, j) == observations.node(0, j) ? 1 : 3;
-}
-
 // What the residual blocks of one fit are made from.
 struct PositionFitInput {
   const Model& model;
@@ -192,13 +186,13 @@ std::vector<ceres::ResidualBlockId> AddObservations(const Observations& observat
                                                     ceres::Problem* problem) {
   std::vector<ceres::ResidualBlockId> observed;
   for (Eigen::Index j = 0; j < observations.Count(); ++j) {
-    const int weighted = WeightedNodes(observations, j);
     std::vector<double*> blocks;
-    for (int a = 0; a < weighted; ++a) blocks.push_back(NodeAt(fit, observations.node(a, j)));
+    for (Eigen::Index a = 0; a < observations.NodeCount(j); ++a)
+      blocks.push_back(NodeAt(fit, observations.node(a, j)));
     ceres::LossFunction* loss =
         options.robust_threshold > 0 ? new ceres::HuberLoss(options.robust_threshold) : nullptr;
     observed.push_back(
-        problem->AddResidualBlock(new ObservationCost(observations, j, weighted), loss, blocks));
+        problem->AddResidualBlock(new ObservationCost(observations, j), loss, blocks));
   }
   return observed;
 }
@@ -282,6 +276,7 @@ void SetForces(const PositionFitInput& input, const StepEquation& equation, Forc
 }
 
 double WeightedRms(const std::vector<ceres::ResidualBlockId>& observed, ceres::Problem* problem) {
+  if (observed.empty()) return 0;
   ceres::Problem::EvaluateOptions observed_only;
   observed_only.residual_blocks = observed;
   observed_only.apply_loss_function = false;

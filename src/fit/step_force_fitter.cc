@@ -2,7 +2,6 @@
 
 #include <glog/logging.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "fit/balance_control.h"
@@ -23,15 +22,11 @@ constexpr Eigen::Index kMaxForces = 12;
 // Likewise for the places of the loaded nodes, which need fewer iterations in large deformations.
 constexpr Eigen::Index kMaxPlaces = 150;
 
-bool HasFreeNodes(const ForceModel& model) {
-  return std::any_of(model.free.begin(), model.free.end(), [](char free) { return free; });
-}
-
 // How the positions are eliminated; null where they are the unknowns.
 std::unique_ptr<BalanceControl> ChooseControl(const Model& model, const StepEquation& equation,
                                               const ForceModel& force_model) {
   const Eigen::Index count = force_model.CoefficientCount();
-  if (HasFreeNodes(force_model) || count == 0 || count > kMaxPlaces) return nullptr;
+  if (force_model.HasFreeNodes() || count == 0 || count > kMaxPlaces) return nullptr;
   if (std::unique_ptr<BalanceControl> places = ControlPlaces(model, equation, force_model))
     return places;
   return count <= kMaxForces ? ControlForces(model, force_model) : nullptr;
@@ -92,7 +87,7 @@ ForceFit StepForceFitter::Fit(const Observations& observations, const ForceFitPr
 Eigen::MatrixXd StepForceFitter::Covariance(const ForceFit& fit, const Observations& observations,
                                             const ForceFitOptions& options) const {
   const Implementation& kept = *implementation_;
-  if (HasFreeNodes(kept.force_model)) return {};
+  if (kept.force_model.HasFreeNodes()) return {};
   const ForceResponse response =
       RespondToForces(kept.model, kept.equation, kept.force_model, fit.position);
   if (!response.IsUsable()) return {};

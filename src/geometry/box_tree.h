@@ -7,11 +7,12 @@
 #include <array>
 #include <vector>
 
+#include "geometry/median_split_tree.h"
+
 namespace lacuna {
 
-// A bounding volume hierarchy with median splits: building takes O(n log² n) and finding the k
-// boxes around a point about O(k + log n), however different the sizes of the boxes are. It may be
-// queried from several threads.
+// A hierarchy of boxes: finding the k boxes around a point takes about O(k + log n), however
+// different the sizes of the boxes are. It may be queried from several threads.
 class BoxTree {
  public:
   // An empty box contains no point.
@@ -21,16 +22,16 @@ class BoxTree {
   // depends on the boxes only.
   template <typename Visit>
   void ForEachAround(const Eigen::Vector3d& point, const Visit& visit) const {
-    if (nodes_.empty()) return;
+    if (tree_.nodes().empty()) return;
     std::array<int, 64> pending;  // one for each level of a balanced tree
     int depth = 0;
     pending[depth++] = 0;
     while (depth > 0) {
       const int at = pending[--depth];
-      const Node& node = nodes_[at];
+      const auto& node = tree_.nodes()[at];
       if (!node.box.contains(point)) continue;
       for (int i = node.begin; i < node.begin + node.count; ++i)
-        if (leaves_[i].box.contains(point)) visit(leaves_[i].index);
+        if (tree_.items()[i].box.contains(point)) visit(tree_.items()[i].index);
       if (node.count > 0) continue;
       pending[depth++] = node.right;
       pending[depth++] = at + 1;
@@ -38,21 +39,15 @@ class BoxTree {
   }
 
  private:
-  // Nodes are stored in depth-first order, so the left child follows its parent.
-  struct Node {
-    Eigen::AlignedBox3d box;
-    int right = 0;  // inner node: the right child
-    int begin = 0;  // leaf: its boxes
-    int count = 0;  // leaf: > 0
-  };
   struct Leaf {
     Eigen::AlignedBox3d box;
     int index;  // among the boxes of the constructor
+    const Eigen::AlignedBox3d& Box() const { return box; }
+    double Place(Eigen::Index axis) const { return box.min()[axis] + box.max()[axis]; }
   };
-  void Build(int begin, int end);
+  static std::vector<Leaf> LeavesOf(const std::vector<Eigen::AlignedBox3d>& boxes);
 
-  std::vector<Leaf> leaves_;
-  std::vector<Node> nodes_;
+  MedianSplitTree<Leaf> tree_;
 };
 
 }  // namespace lacuna

@@ -150,6 +150,7 @@ struct Location {
   Vector4d barycentric = Vector4d::Zero();
   double least = -kInfinite;    // coordinate
   double distance = kInfinite;  // squared, to the centroid, m²
+  bool is_affine = false;       // whether the point was located by ConsiderAffine
 };
 
 class Locator {
@@ -173,23 +174,25 @@ class Locator {
   void Consider(int tet, const Vector3d& point, Location* best) const {
     Vector4d at = StraightCoordinates(mesh_, tet, point);
     if (!IsStraight(tet)) at = CurvedMap(mesh_, tet).Coordinates(point, at);
-    Keep(tet, at, point, best);
+    Keep(tet, at, point, /*is_affine=*/false, best);
   }
   // The same with the affine map of the centroid of a curved element, which exists for every point.
   void ConsiderAffine(int tet, const Vector3d& point, Location* best) const {
     if (IsStraight(tet)) return;
     const CurvedMap map(mesh_, tet);
     const Vector4d centre = Vector4d::Constant(0.25);
-    Keep(tet, centre + map.Gradient(centre) * map.Miss(point, centre), point, best);
+    Keep(tet, centre + map.Gradient(centre) * map.Miss(point, centre), point, /*is_affine=*/true,
+         best);
   }
 
  private:
-  void Keep(int tet, const Vector4d& at, const Vector3d& point, Location* best) const {
+  void Keep(int tet, const Vector4d& at, const Vector3d& point, bool is_affine,
+            Location* best) const {
     if (!at.allFinite()) return;
     const double least = at.minCoeff();
     const double distance = (centroids_.col(tet) - point).squaredNorm();
     if (std::tuple(-least, distance, tet) < std::tuple(-best->least, best->distance, best->tet))
-      *best = {tet, at, least, distance};
+      *best = {tet, at, least, distance, is_affine};
   }
 
   const TetMesh& mesh_;
@@ -197,60 +200,78 @@ class Locator {
   std::vector<char> is_straight_;
 };
 
+// The location of each point by the tetrahedra whose bounding boxes contain it. A point that is not
+// finite, and one in no box, has no tetrahedron.
+std::vector<Location> LocateInBoxes(const TetMesh& mesh, const Locator& locator,
+                                    const Eigen::Matrix3Xd& points) {
+  std::vector<Eigen::AlignedBox3d> boxes(static_cast<size_t>(mesh.TetCount()));
+  for (size_t e = 0; e < boxes.size(); ++e)
+    boxes[e] = BoxAround(mesh, static_cast<Eigen::Index>(e));
+  const BoxTree tree(boxes);
+  std::vector<Location> places(static_cast<size_t>(points.cols()));
+  ParallelFor(points.cols(), kPointsPerTask, [&](int64_t j) {
+    const Vector3d point = points.col(j);
+    if (!point.allFinite()) return;
+    tree.ForEachAround(
+        point, [&](int tet) { locator.Consider(tet, point, &places[static_cast<size_t>(j)]); });
+  });
+  return places;
+}
+
+// Locates the finite points that are in no tetrahedron by those with the nearest centroids, too.
+void LocateOutside(const Locator& locator, const Eigen::Matrix3Xd& points,
+                   std::vector<Location>* places) {
+  std::vector<Eigen::Index> outer;
+  for (Eigen::Index j = 0; j < points.cols(); ++j)
+    if (points.col(j).allFinite() && (*places)[static_cast<size_t>(j)].least < kNearlyInside)
+      outer.push_back(j);
+  if (outer.empty()) return;
+  const Eigen::Index candidates = std::min<Eigen::Index>(kCandidates, locator.centroids().cols());
+  const PointHits near = PointSearch(locator.centroids())
+                             .Nearest(points(Eigen::all, outer), static_cast<int>(candidates));
+  ParallelFor(static_cast<int64_t>(outer.size()), kPointsPerTask, [&](int64_t i) {
+    const Eigen::Index j = outer[static_cast<size_t>(i)];
+    const Vector3d point = points.col(j);
+    Location* const place = &(*places)[static_cast<size_t>(j)];
+    for (Eigen::Index k = 0; k < candidates; ++k) locator.Consider(near.index(k, i), point, place);
+    if (place->tet >= 0) return;
+    // Far from curved elements their quadratic maps may not reach the point.
+    for (Eigen::Index k = 0; k < candidates; ++k)
+      locator.ConsiderAffine(near.index(k, i), point, place);
+    CHECK_GE(place->tet, 0) << "the tetrahedra around a point have no volume";
+  });
+}
+
 }  // namespace
 
 Embedding Embed(const TetMesh& mesh, const Eigen::Matrix3Xd& points) {
   CHECK_GT(mesh.TetCount(), 0) << "there is no tetrahedron to embed points in";
   const Locator locator(mesh);
-  std::vector<Location> places(static_cast<size_t>(points.cols()));
-  std::vector<Eigen::AlignedBox3d> boxes(static_cast<size_t>(mesh.TetCount()));
-  for (size_t e = 0; e < boxes.size(); ++e)
-    boxes[e] = BoxAround(mesh, static_cast<Eigen::Index>(e));
-  const BoxTree tree(boxes);
-  ParallelFor(points.cols(), kPointsPerTask, [&](int64_t j) {
-    const Vector3d point = points.col(j);
-    tree.ForEachAround(
-        point, [&](int tet) { locator.Consider(tet, point, &places[static_cast<size_t>(j)]); });
-  });
+  std::vector<Location> places = LocateInBoxes(mesh, locator, points);
+  LocateOutside(locator, points, &places);
 
-  std::vector<Eigen::Index> outer;
-  for (Eigen::Index j = 0; j < points.cols(); ++j)
-    if (places[static_cast<size_t>(j)].least < kNearlyInside) outer.push_back(j);
-  std::vector<char> is_affine(places.size(), 0);
-  if (!outer.empty()) {
-    const int candidates = static_cast<int>(std::min<Eigen::Index>(kCandidates, mesh.TetCount()));
-    const PointHits near =
-        PointSearch(locator.centroids()).Nearest(points(Eigen::all, outer), candidates);
-    ParallelFor(static_cast<int64_t>(outer.size()), kPointsPerTask, [&](int64_t i) {
-      const size_t j = static_cast<size_t>(outer[static_cast<size_t>(i)]);
-      const Vector3d point = points.col(static_cast<Eigen::Index>(j));
-      for (int k = 0; k < candidates; ++k) locator.Consider(near.index(k, i), point, &places[j]);
-      if (places[j].tet >= 0) return;
-      // Far from curved elements their quadratic maps may not reach the point.
-      is_affine[j] = 1;
-      for (int k = 0; k < candidates; ++k)
-        locator.ConsiderAffine(near.index(k, i), point, &places[j]);
-      CHECK_GE(places[j].tet, 0) << "the tetrahedra around a point have no volume";
-    });
-  }
-
-  Embedding embedding{Eigen::VectorXi(points.cols()),
-                      Eigen::MatrixXd(mesh.tets.rows(), points.cols()),
-                      std::vector<Eigen::MatrixX3d>(places.size()), Eigen::VectorXd(points.cols())};
+  constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+  const Eigen::Index nodes = mesh.tets.rows();
+  Embedding embedding{
+      Eigen::VectorXi::Constant(points.cols(), -1),
+      Eigen::MatrixXd::Constant(nodes, points.cols(), kNotKnown),
+      std::vector<Eigen::MatrixX3d>(places.size(), Eigen::MatrixX3d::Constant(nodes, 3, kNotKnown)),
+      Eigen::VectorXd::Constant(points.cols(), kNotKnown)};
   ParallelFor(points.cols(), kPointsPerTask, [&](int64_t i) {
     const size_t j = static_cast<size_t>(i);
-    const auto& [tet, barycentric, least, distance] = places[j];
-    const Vector4d at = is_affine[j] ? Vector4d::Constant(0.25).eval() : barycentric;
-    const Eigen::Matrix<double, 4, 3> by_place = locator.IsStraight(tet)
-                                                     ? OfAllFour(StraightGradient(mesh, tet))
-                                                     : CurvedMap(mesh, tet).Gradient(at);
-    embedding.tet[i] = tet;
+    const Location& place = places[j];
+    if (place.tet < 0) return;  // a point that is not finite
+    const Vector4d at = place.is_affine ? Vector4d::Constant(0.25).eval() : place.barycentric;
+    const Eigen::Matrix<double, 4, 3> by_place = locator.IsStraight(place.tet)
+                                                     ? OfAllFour(StraightGradient(mesh, place.tet))
+                                                     : CurvedMap(mesh, place.tet).Gradient(at);
+    embedding.tet[i] = place.tet;
     embedding.weight.col(i) = ShapeValues(mesh.Order(), at);
     embedding.gradient[j] = ShapeDerivatives(mesh.Order(), at) * by_place;
-    if (is_affine[j])
+    if (place.is_affine)
       embedding.weight.col(i) +=
-          embedding.gradient[j] * CurvedMap(mesh, tet).Miss(points.col(i), at);
-    embedding.outside[i] = std::max(0.0, -least);
+          embedding.gradient[j] * CurvedMap(mesh, place.tet).Miss(points.col(i), at);
+    embedding.outside[i] = std::max(0.0, -place.least);
   });
   return embedding;
 }
@@ -258,9 +279,14 @@ Embedding Embed(const TetMesh& mesh, const Eigen::Matrix3Xd& points) {
 Eigen::Matrix3Xd PointsAt(const Embedding& embedding, const TetMesh& mesh,
                           const Eigen::Matrix3Xd& nodes) {
   Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, embedding.tet.size());
-  for (Eigen::Index j = 0; j < points.cols(); ++j)
+  for (Eigen::Index j = 0; j < points.cols(); ++j) {
+    if (embedding.tet[j] < 0) {
+      points.col(j).setConstant(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
     for (Eigen::Index a = 0; a < mesh.tets.rows(); ++a)
       points.col(j) += embedding.weight(a, j) * nodes.col(mesh.tets(a, embedding.tet[j]));
+  }
   return points;
 }
 

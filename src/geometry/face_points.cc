@@ -2,15 +2,18 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/face_shape_functions.h"
+
 namespace lacuna {
 namespace {
 
-// Barycentric coordinates in the whole face of the corners of its four triangles, in the order of
-// BoundarySurface::surface.
-constexpr double kQuarters[4][3][3] = {{{1, 0, 0}, {.5, .5, 0}, {.5, 0, .5}},
-                                       {{.5, .5, 0}, {0, 1, 0}, {0, .5, .5}},
-                                       {{.5, 0, .5}, {0, .5, .5}, {0, 0, 1}},
-                                       {{.5, .5, 0}, {0, .5, .5}, {.5, 0, .5}}};
+template <int kNodes>
+void SetShape(const FaceShape<kNodes>& shape, FacePoint* point) {
+  point->count = kNodes;
+  point->weight.head<kNodes>() = shape.value;
+  point->by_first.head<kNodes>() = shape.by_first;
+  point->by_second.head<kNodes>() = shape.by_second;
+}
 
 }  // namespace
 
@@ -20,32 +23,17 @@ FacePoint PlaceOnFace(const BoundarySurface& boundary, int triangle,
   point.weight.setZero();
   point.by_first.setZero();
   point.by_second.setZero();
-  // The two coordinates of the face are l[1] and l[2], with l[0] = 1 − l[1] − l[2].
-  constexpr double kFirst[3] = {-1, 1, 0}, kSecond[3] = {-1, 0, 1};
   if (boundary.faces.rows() == 3) {
     point.face = triangle;
-    point.count = 3;
-    point.weight.head<3>() = barycentric;
-    for (int a = 0; a < 3; ++a) {
-      point.by_first[a] = kFirst[a];
-      point.by_second[a] = kSecond[a];
-    }
+    SetShape(LinearFaceShape(barycentric), &point);
     return point;
   }
   point.face = triangle / 4;
-  point.count = 6;
-  Eigen::Vector3d l = Eigen::Vector3d::Zero();
+  const Eigen::Matrix<double, 3, 6> nodes = FaceNodeCoordinates();
+  Eigen::Vector3d in_face = Eigen::Vector3d::Zero();
   for (int corner = 0; corner < 3; ++corner)
-    for (int a = 0; a < 3; ++a) l[a] += barycentric[corner] * kQuarters[triangle % 4][corner][a];
-  for (int a = 0; a < 3; ++a) {
-    point.weight[a] = l[a] * (2 * l[a] - 1);
-    point.by_first[a] = (4 * l[a] - 1) * kFirst[a];
-    point.by_second[a] = (4 * l[a] - 1) * kSecond[a];
-    const int b = (a + 1) % 3;  // the midpoint between a and b
-    point.weight[3 + a] = 4 * l[a] * l[b];
-    point.by_first[3 + a] = 4 * (l[a] * kFirst[b] + l[b] * kFirst[a]);
-    point.by_second[3 + a] = 4 * (l[a] * kSecond[b] + l[b] * kSecond[a]);
-  }
+    in_face += barycentric[corner] * nodes.col(kFaceQuarters[triangle % 4][corner]);
+  SetShape(QuadraticFaceShape(in_face), &point);
   return point;
 }
 

@@ -33,105 +33,106 @@ std::string NameOf(long long type) {
   return fmt::format("a {} (type {} of Gmsh)", kind, type);
 }
 
-void SkipSection(const std::string& name, TextScanner& scanner) {
+void SkipSection(const std::string& name, TextScanner* scanner) {
   do {
-    scanner.ExpectLine("$End" + name);
-  } while (scanner.Word("a word") != "$End" + name);
+    scanner->ExpectLine("$End" + name);
+  } while (scanner->Word("a word") != "$End" + name);
 }
 
-void ExpectEnd(const std::string& name, TextScanner& scanner) {
-  scanner.ExpectLine("$End" + name);
-  if (scanner.Word("the end of the section") != "$End" + name) scanner.Fail("expected $End" + name);
+void ExpectEnd(const std::string& name, TextScanner* scanner) {
+  scanner->ExpectLine("$End" + name);
+  if (scanner->Word("the end of the section") != "$End" + name)
+    scanner->Fail("expected $End" + name);
 }
 
-GmshVersion ReadFormat(TextScanner& scanner) {
-  scanner.ExpectLine("the version");
-  const double version = scanner.Number("the version");
+GmshVersion ReadFormat(TextScanner* scanner) {
+  scanner->ExpectLine("the version");
+  const double version = scanner->Number("the version");
   const bool is_4 = version == 4.1;
   if (!is_4 && (version < 2 || version >= 3)) {
-    scanner.Fail(fmt::format(
+    scanner->Fail(fmt::format(
         "Gmsh version {} is not read; save as version 4.1 or 2.2 (-format msh2)", version));
   }
-  if (scanner.Integer("0 for text") != 0) {
-    scanner.Fail("binary Gmsh files are not read; save as text");
+  if (scanner->Integer("0 for text") != 0) {
+    scanner->Fail("binary Gmsh files are not read; save as text");
   }
   ExpectEnd("MeshFormat", scanner);
   return is_4 ? GmshVersion::k41 : GmshVersion::k22;
 }
 
-void ReadNodes22(TextScanner& scanner, NodeNumbers& numbers, TetSoup& soup) {
-  scanner.ExpectLine("the number of nodes");
-  const long long count = Count(scanner, "the number of nodes");
+void ReadNodes22(TextScanner* scanner, NodeNumbers* numbers, TetSoup* soup) {
+  scanner->ExpectLine("the number of nodes");
+  const long long count = scanner->Count("the number of nodes");
   for (long long n = 0; n < count; ++n) {
-    scanner.ExpectLine(fmt::format("node {} of {}", n + 1, count));
-    numbers.Add(scanner.Integer("the number of the node"), scanner);
-    soup.nodes.push_back(scanner.Point("a coordinate"));
+    scanner->ExpectLine(fmt::format("node {} of {}", n + 1, count));
+    numbers->Add(scanner->Integer("the number of the node"), *scanner);
+    soup->nodes.push_back(scanner->Point("a coordinate"));
   }
 }
 
 // Blocks of "dimension tag parametric count", then the numbers of all nodes of the block, then
 // their coordinates, which in parametric blocks are followed by parameters.
-void ReadNodes41(TextScanner& scanner, NodeNumbers& numbers, TetSoup& soup) {
-  scanner.ExpectLine("the numbers of blocks and nodes");
-  const long long blocks = Count(scanner, "the number of blocks");
+void ReadNodes41(TextScanner* scanner, NodeNumbers* numbers, TetSoup* soup) {
+  scanner->ExpectLine("the numbers of blocks and nodes");
+  const long long blocks = scanner->Count("the number of blocks");
   for (long long b = 0; b < blocks; ++b) {
-    scanner.ExpectLine(fmt::format("block {} of {} of the nodes", b + 1, blocks));
-    for (const char* what : {"a dimension", "a tag", "0 or 1"}) scanner.Integer(what);
-    const long long count = Count(scanner, "the number of nodes in the block");
+    scanner->ExpectLine(fmt::format("block {} of {} of the nodes", b + 1, blocks));
+    for (const char* what : {"a dimension", "a tag", "0 or 1"}) scanner->Integer(what);
+    const long long count = scanner->Count("the number of nodes in the block");
     for (long long n = 0; n < count; ++n) {
-      scanner.ExpectLine(fmt::format("the number of node {} of {} in the block", n + 1, count));
-      numbers.Add(scanner.Integer("the number of the node"), scanner);
+      scanner->ExpectLine(fmt::format("the number of node {} of {} in the block", n + 1, count));
+      numbers->Add(scanner->Integer("the number of the node"), *scanner);
     }
     for (long long n = 0; n < count; ++n) {
-      scanner.ExpectLine(fmt::format("node {} of {} in the block", n + 1, count));
-      soup.nodes.push_back(scanner.Point("a coordinate"));
+      scanner->ExpectLine(fmt::format("node {} of {} in the block", n + 1, count));
+      soup->nodes.push_back(scanner->Point("a coordinate"));
     }
   }
 }
 
-void AddTet(long long type, const NodeNumbers& numbers, TextScanner& scanner, TetSoup& soup) {
+void AddTet(long long type, const NodeNumbers& numbers, TextScanner* scanner, TetSoup* soup) {
   std::array<int, 10> nodes{};
   const int node_count = type == kTet ? 4 : 10;
   for (int k = 0; k < node_count; ++k)
-    nodes[k] = numbers.Place(scanner.Integer("the number of a node"), scanner);
+    nodes[k] = numbers.Place(scanner->Integer("the number of a node"), *scanner);
   // Gmsh lists the midpoint of (2,3) before that of (1,3).
   std::swap(nodes[8], nodes[9]);
-  soup.Add({nodes.data(), static_cast<size_t>(node_count)}, scanner.Line());
+  soup->Add({nodes.data(), static_cast<size_t>(node_count)}, scanner->Line());
 }
 
-void ReadElements22(TextScanner& scanner, const NodeNumbers& numbers, TetSoup& soup) {
-  scanner.ExpectLine("the number of elements");
-  const long long count = Count(scanner, "the number of elements");
+void ReadElements22(TextScanner* scanner, const NodeNumbers& numbers, TetSoup* soup) {
+  scanner->ExpectLine("the number of elements");
+  const long long count = scanner->Count("the number of elements");
   for (long long e = 0; e < count; ++e) {
-    scanner.ExpectLine(fmt::format("element {} of {}", e + 1, count));
-    scanner.Integer("the number of the element");
-    const long long type = scanner.Integer("the type of the element");
+    scanner->ExpectLine(fmt::format("element {} of {}", e + 1, count));
+    scanner->Integer("the number of the element");
+    const long long type = scanner->Integer("the type of the element");
     if (type != kTet && type != kQuadraticTet) {
-      if (!IsFlat(type)) soup.AddOther(NameOf(type), scanner.Line());
+      if (!IsFlat(type)) soup->AddOther(NameOf(type), scanner->Line());
       continue;
     }
-    const long long tags = Count(scanner, "the number of tags");
-    for (long long tag = 0; tag < tags; ++tag) scanner.Integer("a tag");
+    const long long tags = scanner->Count("the number of tags");
+    for (long long tag = 0; tag < tags; ++tag) scanner->Integer("a tag");
     AddTet(type, numbers, scanner, soup);
   }
 }
 
 // Blocks of "dimension tag type count", then "number node …" for each element.
-void ReadElements41(TextScanner& scanner, const NodeNumbers& numbers, TetSoup& soup) {
-  scanner.ExpectLine("the numbers of blocks and elements");
-  const long long blocks = Count(scanner, "the number of blocks");
+void ReadElements41(TextScanner* scanner, const NodeNumbers& numbers, TetSoup* soup) {
+  scanner->ExpectLine("the numbers of blocks and elements");
+  const long long blocks = scanner->Count("the number of blocks");
   for (long long b = 0; b < blocks; ++b) {
-    scanner.ExpectLine(fmt::format("block {} of {} of the elements", b + 1, blocks));
-    for (const char* what : {"a dimension", "a tag"}) scanner.Integer(what);
-    const long long type = scanner.Integer("the type of the elements");
-    const long long count = Count(scanner, "the number of elements in the block");
+    scanner->ExpectLine(fmt::format("block {} of {} of the elements", b + 1, blocks));
+    for (const char* what : {"a dimension", "a tag"}) scanner->Integer(what);
+    const long long type = scanner->Integer("the type of the elements");
+    const long long count = scanner->Count("the number of elements in the block");
     for (long long e = 0; e < count; ++e) {
-      scanner.ExpectLine(fmt::format("element {} of {} in the block", e + 1, count));
+      scanner->ExpectLine(fmt::format("element {} of {} in the block", e + 1, count));
       if (type != kTet && type != kQuadraticTet) {
-        if (!IsFlat(type)) soup.AddOther(NameOf(type), scanner.Line());
+        if (!IsFlat(type)) soup->AddOther(NameOf(type), scanner->Line());
         continue;
       }
-      scanner.Integer("the number of the element");
+      scanner->Integer("the number of the element");
       AddTet(type, numbers, scanner, soup);
     }
   }
@@ -194,18 +195,18 @@ TetSoup ReadGmsh(const std::filesystem::path& file) {
   bool has_elements = false;
   scanner.ExpectLine("$MeshFormat");
   if (scanner.Word("a section") != "$MeshFormat") scanner.Fail("expected $MeshFormat");
-  const bool is_4 = ReadFormat(scanner) == GmshVersion::k41;
+  const bool is_4 = ReadFormat(&scanner) == GmshVersion::k41;
   while (scanner.NextLine()) {
     const std::string section(scanner.Word("a section"));
     if (section == "$Nodes") {
-      (is_4 ? ReadNodes41 : ReadNodes22)(scanner, numbers, soup);
-      ExpectEnd("Nodes", scanner);
+      (is_4 ? ReadNodes41 : ReadNodes22)(&scanner, &numbers, &soup);
+      ExpectEnd("Nodes", &scanner);
     } else if (section == "$Elements") {
-      (is_4 ? ReadElements41 : ReadElements22)(scanner, numbers, soup);
-      ExpectEnd("Elements", scanner);
+      (is_4 ? ReadElements41 : ReadElements22)(&scanner, numbers, &soup);
+      ExpectEnd("Elements", &scanner);
       has_elements = true;
     } else if (section.starts_with('$')) {
-      SkipSection(section.substr(1), scanner);
+      SkipSection(section.substr(1), &scanner);
     } else {
       scanner.Fail(fmt::format("got \"{}\"; expected a section such as $Nodes", section));
     }

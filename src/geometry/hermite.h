@@ -34,9 +34,9 @@ Knot<Matrix> Interpolate(const Knot<Matrix>& from, const Knot<Matrix>& to, doubl
 // velocities in the two intervals and the lengths of these (s).
 template <typename Matrix>
 Matrix VelocityOfParabola(const Matrix& velocity_before, double length_before,
-                          const Matrix& velocity_behind, double length_behind) {
-  return (length_behind * velocity_before + length_before * velocity_behind) /
-         (length_before + length_behind);
+                          const Matrix& velocity_after, double length_after) {
+  return (length_after * velocity_before + length_before * velocity_after) /
+         (length_before + length_after);
 }
 
 }  // namespace lacuna

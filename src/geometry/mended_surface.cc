@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <utility>
+
+#include "geometry/component_volume.h"
+#include "geometry/half_edges.h"
+#include "geometry/used_indices.h"
 
 namespace lacuna {
 namespace {
@@ -18,40 +22,6 @@ using Eigen::Index;
 
 // Two roundings of a number to six digits differ by at most this share of it.
 constexpr double kSixDigits = 1e-5;
-
-// A side of a triangle, with the smaller vertex first.
-struct Side {
-  int low, high;
-  int triangle;
-  bool forward;  // whether the triangle runs from `low` to `high`
-  bool operator<(const Side& other) const {
-    return std::tie(low, high, triangle) < std::tie(other.low, other.high, other.triangle);
-  }
-  bool IsOfSameEdge(const Side& other) const { return low == other.low && high == other.high; }
-};
-
-// The sides of all triangles, those of an edge one after the other.
-std::vector<Side> SortedSides(const Eigen::Matrix3Xi& triangles) {
-  std::vector<Side> sides;
-  sides.reserve(static_cast<size_t>(triangles.size()));
-  for (int t = 0; t < triangles.cols(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const int from = triangles(k, t), to = triangles((k + 1) % 3, t);
-      sides.push_back({std::min(from, to), std::max(from, to), t, from < to});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  return sides;
-}
-
-// Calls use(begin, end) for the range of sides of each edge.
-template <typename Use>
-void ForEachEdge(const std::vector<Side>& sides, const Use& use) {
-  for (size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    while (end < sides.size() && sides[end].IsOfSameEdge(sides[begin])) ++end;
-    use(begin, end);
-  }
-}
 
 // For each vertex the first one with the same coordinates.
 std::vector<int> FirstAtSamePlace(const Eigen::Matrix3Xd& vertices) {
@@ -79,10 +49,10 @@ Eigen::Matrix3Xi Renumbered(const Eigen::Matrix3Xi& triangles, const std::vector
 int MergeAtOpenEdges(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& triangles,
                      double tolerance, std::vector<int>* first) {
   std::vector<char> is_open(first->size(), 0);
-  const std::vector<Side> sides = SortedSides(Renumbered(triangles, *first));
-  ForEachEdge(sides, [&](size_t begin, size_t end) {
-    if (end - begin != 1) return;
-    for (const int v : {sides[begin].low, sides[begin].high}) is_open[static_cast<size_t>(v)] = 1;
+  const std::vector<HalfEdge> half_edges = SortedHalfEdges(Renumbered(triangles, *first));
+  ForEachEdge(half_edges, [&](std::span<const HalfEdge> edge) {
+    if (edge.size() != 1) return;
+    for (const int v : {edge[0].low, edge[0].high}) is_open[static_cast<size_t>(v)] = 1;
   });
   // A vertex is at most one cube away from those that are nearer than the tolerance.
   using Cube = std::array<long long, 3>;
@@ -140,18 +110,13 @@ Eigen::Matrix3Xi DropDegenerateAndRepeated(const Eigen::Matrix3Xi& triangles,
 }
 
 // The vertices that are used, and the triangles in their numbering.
-void KeepUsedVertices(const TriMesh& given, Eigen::Matrix3Xi triangles, MendedSurface* mended) {
-  std::vector<int> number(static_cast<size_t>(given.vertices.cols()), -1), used;
-  for (const int v : triangles.reshaped()) number[static_cast<size_t>(v)] = 0;
-  for (int v = 0; v < given.vertices.cols(); ++v) {
-    if (number[static_cast<size_t>(v)] < 0) continue;
-    number[static_cast<size_t>(v)] = static_cast<int>(used.size());
-    used.push_back(v);
-  }
-  mended->vertex_in_file =
-      Eigen::Map<const Eigen::VectorXi>(used.data(), static_cast<Index>(used.size()));
-  mended->mesh.vertices = given.vertices(Eigen::all, used);
-  mended->mesh.triangles = Renumbered(triangles, number);
+void KeepUsedVertices(const TriMesh& given, const Eigen::Matrix3Xi& triangles,
+                      MendedSurface* mended) {
+  const UsedIndices vertices = FindUsedIndices(triangles, given.vertices.cols());
+  mended->vertex_in_file = Eigen::Map<const Eigen::VectorXi>(
+      vertices.used.data(), static_cast<Index>(vertices.used.size()));
+  mended->mesh.vertices = given.vertices(Eigen::all, vertices.used);
+  mended->mesh.triangles = vertices.Renumbered(triangles);
 }
 
 // Triangles that are connected by edges of two triangles.
@@ -206,77 +171,85 @@ class OrientationMender {
     for (char& turned : component->is_turned) turned = turned ? 0 : 1;
   }
 
-  void FindComponents() {
-    struct Neighbour {
-      int triangle = -1;
-      char is_opposite = 0;  // whether its orientation is the opposite one
-    };
-    const auto count = static_cast<size_t>(mesh_.triangles.cols());
-    std::vector<std::array<Neighbour, 3>> neighbours(count);
-    std::vector<char> found(count, 0), turned(count, 0);
-    const std::vector<Side> sides = SortedSides(mesh_.triangles);
-    const auto add = [&](const Side& side, const Side& other) {
-      for (Neighbour& slot : neighbours[static_cast<size_t>(side.triangle)]) {
+  // A triangle beyond an edge that has two triangles.
+  struct Neighbour {
+    int triangle = -1;
+    char is_opposite = 0;  // whether its orientation is the opposite one
+  };
+  using Neighbours = std::array<Neighbour, 3>;
+
+  std::vector<Neighbours> NeighboursOfTriangles() const {
+    std::vector<Neighbours> neighbours(static_cast<size_t>(mesh_.triangles.cols()));
+    const auto add = [&](const HalfEdge& edge, const HalfEdge& twin) {
+      for (Neighbour& slot : neighbours[static_cast<size_t>(edge.triangle)]) {
         if (slot.triangle >= 0) continue;
-        slot = {other.triangle, static_cast<char>(side.forward == other.forward)};
+        slot = {twin.triangle, static_cast<char>(edge.forward == twin.forward)};
         return;
       }
     };
-    ForEachEdge(sides, [&](size_t begin, size_t end) {
-      if (end - begin != 2) return;
-      add(sides[begin], sides[begin + 1]);
-      add(sides[begin + 1], sides[begin]);
+    const std::vector<HalfEdge> half_edges = SortedHalfEdges(mesh_.triangles);
+    ForEachEdge(half_edges, [&](std::span<const HalfEdge> edge) {
+      if (edge.size() != 2) return;
+      add(edge[0], edge[1]);
+      add(edge[1], edge[0]);
     });
-    for (size_t seed = 0; seed < count; ++seed) {
-      if (found[seed]) continue;
-      SurfaceComponent component;
-      component.triangles.push_back(static_cast<int>(seed));
-      found[seed] = 1;
-      for (size_t k = 0; k < component.triangles.size(); ++k) {
-        const auto t = static_cast<size_t>(component.triangles[k]);
-        for (int corner = 0; corner < 3; ++corner)
-          component.box.extend(Corner(component.triangles[k], corner));
-        component.is_turned.push_back(turned[t]);
-        for (const Neighbour& neighbour : neighbours[t]) {
-          if (neighbour.triangle < 0) {
-            component.is_closed = false;
-            continue;
-          }
-          const auto other = static_cast<size_t>(neighbour.triangle);
-          const auto expected = static_cast<char>(turned[t] ^ neighbour.is_opposite);
-          if (found[other]) {
-            if (turned[other] != expected) component.is_two_sided = false;
-            continue;
-          }
-          found[other] = 1;
-          turned[other] = expected;
-          component.triangles.push_back(neighbour.triangle);
+    return neighbours;
+  }
+
+  void FindComponents() {
+    const std::vector<Neighbours> neighbours = NeighboursOfTriangles();
+    std::vector<char> is_found(neighbours.size(), 0), is_turned(neighbours.size(), 0);
+    for (size_t seed = 0; seed < neighbours.size(); ++seed)
+      if (!is_found[seed])
+        components_.push_back(
+            ComponentOf(static_cast<int>(seed), neighbours, &is_found, &is_turned));
+  }
+
+  // The component of the triangle `seed`, whose orientation is propagated to the others.
+  SurfaceComponent ComponentOf(int seed, const std::vector<Neighbours>& neighbours,
+                               std::vector<char>* is_found, std::vector<char>* is_turned) const {
+    SurfaceComponent component;
+    component.triangles.push_back(seed);
+    (*is_found)[static_cast<size_t>(seed)] = 1;
+    for (size_t k = 0; k < component.triangles.size(); ++k) {
+      const auto t = static_cast<size_t>(component.triangles[k]);
+      for (int corner = 0; corner < 3; ++corner)
+        component.box.extend(Corner(component.triangles[k], corner));
+      component.is_turned.push_back((*is_turned)[t]);
+      for (const Neighbour& neighbour : neighbours[t]) {
+        if (neighbour.triangle < 0) {
+          component.is_closed = false;
+          continue;
         }
+        const auto other = static_cast<size_t>(neighbour.triangle);
+        const auto expected = static_cast<char>((*is_turned)[t] ^ neighbour.is_opposite);
+        if ((*is_found)[other]) {
+          if ((*is_turned)[other] != expected) component.is_two_sided = false;
+          continue;
+        }
+        (*is_found)[other] = 1;
+        (*is_turned)[other] = expected;
+        component.triangles.push_back(neighbour.triangle);
       }
-      if (!component.is_two_sided)
-        std::fill(component.is_turned.begin(), component.is_turned.end(), 0);
-      components_.push_back(std::move(component));
     }
+    if (!component.is_two_sided)
+      std::fill(component.is_turned.begin(), component.is_turned.end(), 0);
+    return component;
   }
 
   Eigen::Vector3d Corner(int triangle, int corner) const {
     return mesh_.vertices.col(mesh_.triangles(corner, triangle));
   }
 
-  // Whether the volume of a closed component is negative, by more than the rounding of coordinates.
+  // Of a closed component, as it is turned.
   bool IsInsideOut(const SurfaceComponent& component) const {
-    const Eigen::Vector3d centre = component.box.center();
-    double volume = 0, area = 0;
+    ComponentVolume volume(component.box);
     for (size_t k = 0; k < component.triangles.size(); ++k) {
       const int t = component.triangles[k];
-      const Eigen::Vector3d a = Corner(t, 0) - centre;
-      const Eigen::Vector3d cross = (Corner(t, 1) - centre - a).cross(Corner(t, 2) - centre - a);
-      volume += (component.is_turned[k] ? -1 : 1) * a.dot(cross) / 6;
-      area += 0.5 * cross.norm();
+      const int second = component.is_turned[k] ? 2 : 1;
+      volume.Add(Corner(t, 0), Corner(t, second), Corner(t, 3 - second));
     }
-    const double largest = std::max(component.box.min().cwiseAbs().maxCoeff(),
-                                    component.box.max().cwiseAbs().maxCoeff());
-    return volume < -8 * std::numeric_limits<double>::epsilon() * largest * area;
+    return volume.IsNegative();
   }
 
   bool IsWithinAnother(const SurfaceComponent& component) const {

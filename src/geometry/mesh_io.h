@@ -1,4 +1,4 @@
-// Reading and writing of triangle meshes and tetrahedral meshes.
+// Reading and writing of triangle meshes (tri_mesh_io.cc) and tetrahedral meshes (tet_mesh_io.cc).
 //
 // The readers choose the format by the extension and keep the file's length unit. They throw
 // InputError with the file, the line if there is one, and the fault: a missing or truncated file,
@@ -54,7 +54,7 @@ struct TetMeshFile {
 // note. Points, lines and faces are skipped; volume elements that are no tetrahedra are refused,
 // because a part of the body would be missing. Tetrahedra that have no volume or a repeated node,
 // have their midside nodes on each other's edges (as in the order of another format), overlap
-// across a face, or share one face among three are refused, and so are lines behind those that a
+// across a face, or share one face among three are refused, and so are lines after those that a
 // count announces.
 TetMeshFile ReadTetMesh(const std::filesystem::path& file);
 // The files that it reads for this name: two of TetGen, one of any other format.

@@ -1,4 +1,5 @@
-// Nearest-point queries on point clouds and triangulated surfaces.
+// Nearest-point queries on point clouds (point_search.cc) and triangulated surfaces
+// (surface_search.cc).
 //
 // Both search structures are built once, keep their own copy of the data, and may be queried from
 // several threads. An empty cloud or surface is a programming error (CHECK).

@@ -1,4 +1,4 @@
-// The node numbers of a mesh file, and the counts in it.
+// The node numbers of a mesh file.
 #ifndef LACUNA_GEOMETRY_NODE_NUMBERS_H_
 #define LACUNA_GEOMETRY_NODE_NUMBERS_H_
 
@@ -40,13 +40,6 @@ class NodeNumbers {
   };
   std::unordered_map<long long, int, Hash> place_;
 };
-
-// Reads a whole number that is not negative; throws InputError otherwise.
-inline long long Count(TextScanner& scanner, const char* what) {
-  const long long count = scanner.Integer(what);
-  if (count < 0) scanner.Fail("got " + std::to_string(count) + "; expected " + what);
-  return count;
-}
 
 }  // namespace lacuna
 

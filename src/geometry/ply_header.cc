@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <type_traits>
 
 #include "core/error.h"
+#include "core/parsed_word.h"
 
 namespace lacuna {
 namespace {
@@ -115,10 +115,9 @@ class HeaderReader {
     RequireName(words[1]);
     PlyElement element;
     element.name = words[1];
-    const auto [end, problem] =
-        std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
-    if (problem != std::errc() || end != words[2].data() + words[2].size())
-      Fail(fmt::format("got \"{}\"; expected a number of \"{}\"", words[2], words[1]));
+    const auto count = ParseWord<size_t>(words[2]);
+    if (!count) Fail(fmt::format("got \"{}\"; expected a number of \"{}\"", words[2], words[1]));
+    element.count = *count;
     if (header_.Find(element.name) != nullptr)
       Fail(fmt::format("announces \"{}\" a second time", element.name));
     header_.elements.push_back(std::move(element));
@@ -229,17 +228,15 @@ class BodyReader {
 
   template <typename Number>
   Number RequireNumber(std::string_view word) const {
-    Number number{};
-    const char* const end = word.data() + word.size();
-    const auto [last, problem] = std::from_chars(word.data(), end, number);
-    if (problem != std::errc() || last != end || !std::isfinite(static_cast<double>(number))) {
+    const auto number = ParseWord<Number>(word);
+    if (!number || !std::isfinite(static_cast<double>(*number))) {
       const size_t before = static_cast<size_t>(word.data() - content_.data());
       const auto line = 1 + std::count(content_.begin(), content_.begin() + before, '\n');
       throw InputError({file_.string(), static_cast<int>(line)},
                        fmt::format("got \"{}\"; expected {}", word,
                                    std::is_integral_v<Number> ? "a whole number" : "a number"));
     }
-    return number;
+    return *number;
   }
 
   std::optional<int64_t> LengthInText(const PlyProperty& list) {

@@ -1,8 +1,8 @@
 // The header of a PLY file.
 //
 // The libraries that read the bodies of PLY files trust their headers: a property that belongs to
-// no element, a negative count or an unknown type makes them leave their memory. A header that is
-// read here is known to be sound.
+// no element, a negative count or an unknown type makes them read outside their buffers. A header
+// that is read here is known to be sound.
 #ifndef LACUNA_GEOMETRY_PLY_HEADER_H_
 #define LACUNA_GEOMETRY_PLY_HEADER_H_
 
@@ -32,7 +32,7 @@ struct PlyHeader {
   bool is_text = false;
   bool is_big_endian = false;
   std::vector<PlyElement> elements;
-  size_t body = 0;  // position of the first byte behind the header
+  size_t body = 0;  // position of the first byte after the header
 
   // Null: there is no such element.
   const PlyElement* Find(std::string_view element) const;
@@ -47,7 +47,7 @@ PlyHeader ReadPlyHeader(const std::filesystem::path& file, std::string_view cont
 
 // Throws InputError for a body that ends too early, for a list with a negative length, and for a
 // word of a text that is not a finite number, or not a whole one where its type is. Other readers
-// make room for a list before they read it, and take whatever they find behind the end of a file
+// make room for a list before they read it, and take whatever they find after the end of a file
 // for its length.
 void CheckPlyBody(const std::filesystem::path& file, std::string_view content,
                   const PlyHeader& header);

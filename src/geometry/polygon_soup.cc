@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -16,6 +15,7 @@
 
 #include "core/error.h"
 #include "core/letter_case.h"
+#include "core/parsed_word.h"
 #include "core/text_file.h"
 #include "geometry/text_scanner.h"
 
@@ -24,13 +24,10 @@ namespace {
 
 // The vertex of a corner such as 7, 7/2, 7//3 or -1/2/3, as it stands there.
 long long CornerNumber(std::string_view corner, const TextScanner& scanner) {
-  const std::string_view number = corner.substr(0, corner.find('/'));
-  long long vertex = 0;
-  const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), vertex);
-  if (problem != std::errc() || end != number.data() + number.size()) {
+  const auto vertex = ParseWord<long long>(corner.substr(0, corner.find('/')));
+  if (!vertex)
     scanner.Fail(fmt::format("got \"{}\"; expected a corner such as 7, 7/2 or 7//3", corner));
-  }
-  return vertex;
+  return *vertex;
 }
 
 constexpr size_t kStlHeader = 84, kStlTriangle = 50;
@@ -68,7 +65,7 @@ PolygonSoup ReadBinaryStl(const std::filesystem::path& file, const std::string& 
     soup.polygons.push_back(std::move(polygon));
   }
   const size_t rest = content.size() - kStlHeader - count * kStlTriangle;
-  if (rest > 0) soup.notes.push_back(fmt::format("skipped {} bytes behind the triangles", rest));
+  if (rest > 0) soup.notes.push_back(fmt::format("skipped {} bytes after the triangles", rest));
   return soup;
 }
 
@@ -110,40 +107,38 @@ struct OffHeader {
 };
 
 long long OffCount(std::string_view word, const char* what, const TextScanner& scanner) {
-  long long count = -1;
-  const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), count);
-  if (problem != std::errc() || end != word.data() + word.size() || count < 0) {
-    scanner.Fail(fmt::format("got \"{}\"; expected {}", word, what));
-  }
-  return count;
+  const auto count = ParseWord<long long>(word);
+  if (!count || *count < 0) scanner.Fail(fmt::format("got \"{}\"; expected {}", word, what));
+  return *count;
 }
 
-OffHeader ReadOffHeader(TextScanner& scanner) {
-  scanner.ExpectLine("OFF");
-  std::string_view word = scanner.Word("OFF");
+OffHeader ReadOffHeader(TextScanner* scanner) {
+  scanner->ExpectLine("OFF");
+  std::string_view word = scanner->Word("OFF");
   const std::string lower = InLowerCase(word);
   if (const size_t at = lower.find("off"); at != std::string::npos) {
     const std::string_view variant = word.substr(0, at);
     if (variant == "n" || variant.find_first_not_of("STCNstcn") != std::string_view::npos) {
-      scanner.Fail(fmt::format("{} is not read: its vertices do not have three coordinates", word));
+      scanner->Fail(
+          fmt::format("{} is not read: its vertices do not have three coordinates", word));
     }
-    // Some programs write the first count without a blank behind the keyword.
+    // Some programs write the first count without a blank after the keyword.
     word.remove_prefix(at + 3);
-    if (word.empty()) word = scanner.WordAnywhere("the number of vertices");
+    if (word.empty()) word = scanner->WordAnywhere("the number of vertices");
   } else if (std::isdigit(static_cast<unsigned char>(word[0])) == 0) {
-    scanner.Fail(fmt::format("got \"{}\"; an OFF file begins with OFF", word));
+    scanner->Fail(fmt::format("got \"{}\"; an OFF file begins with OFF", word));
   }
   OffHeader header;
-  header.vertices = OffCount(word, "the number of vertices", scanner);
+  header.vertices = OffCount(word, "the number of vertices", *scanner);
   header.faces =
-      OffCount(scanner.WordAnywhere("the number of faces"), "the number of faces", scanner);
+      OffCount(scanner->WordAnywhere("the number of faces"), "the number of faces", *scanner);
   // The number of edges is not used, and some programs do not write it. On a line of its own it is
   // the only number there.
-  const bool has_own_line = scanner.AtLineEnd();
-  if (has_own_line) scanner.ExpectLine("the number of edges");
-  header.is_at_vertex = has_own_line && scanner.WordsLeft() > 1;
+  const bool has_own_line = scanner->AtLineEnd();
+  if (has_own_line) scanner->ExpectLine("the number of edges");
+  header.is_at_vertex = has_own_line && scanner->WordsLeft() > 1;
   if (!header.is_at_vertex)
-    OffCount(scanner.Word("the number of edges"), "the number of edges", scanner);
+    OffCount(scanner->Word("the number of edges"), "the number of edges", *scanner);
   return header;
 }
 
@@ -276,7 +271,7 @@ PolygonSoup ReadOff(const std::filesystem::path& file) {
     return ReadBinaryOff(file, std::string(std::istreambuf_iterator<char>(stream), {}));
   PolygonSoup soup;
   TextScanner scanner(file, '#');
-  const OffHeader header = ReadOffHeader(scanner);
+  const OffHeader header = ReadOffHeader(&scanner);
   for (long long v = 0; v < header.vertices; ++v) {
     if (v > 0 || !header.is_at_vertex)
       scanner.ExpectLine(fmt::format("vertex {} of {}", v + 1, header.vertices));

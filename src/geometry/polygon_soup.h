@@ -32,7 +32,7 @@ PolygonSoup ReadStl(const std::filesystem::path& file);
 // without variants as "OFF BINARY", with 32-bit big-endian numbers. Comments begin with #. The
 // counts may be on the line of the keyword, which may be missing, and on several lines; that of the
 // edges may be missing. What follows the coordinates of a vertex or the corners of a face on its
-// line is skipped; lines behind the last face are refused.
+// line is skipped; lines after the last face are refused.
 PolygonSoup ReadOff(const std::filesystem::path& file);
 
 }  // namespace lacuna

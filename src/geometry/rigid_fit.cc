@@ -18,6 +18,23 @@ Eigen::Matrix3Xd About(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& ce
   return points.colwise() - centre;
 }
 
+// Points and their images about the centroids of both, without those that are not finite.
+struct CentredPairs {
+  CentredPairs(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
+    const std::vector<Eigen::Index> seen = FiniteColumns(from + to);
+    points = from(Eigen::all, seen);
+    const Eigen::Matrix3Xd images = to(Eigen::all, seen);
+    if (seen.empty()) return;
+    from_centre = points.rowwise().mean();
+    to_centre = images.rowwise().mean();
+    a = About(points, from_centre);
+    b = About(images, to_centre);
+  }
+  Eigen::Matrix3Xd points;  // of `from`
+  Eigen::Matrix3Xd a, b;    // of `from` and of `to`, relative to their centroids
+  Eigen::Vector3d from_centre = Eigen::Vector3d::Zero(), to_centre = Eigen::Vector3d::Zero();
+};
+
 }  // namespace
 
 SpannedAxes AxesOf(const Eigen::Matrix3Xd& points) {
@@ -32,12 +49,9 @@ SpannedAxes AxesOf(const Eigen::Matrix3Xd& points) {
 }
 
 RigidFit FitRigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
-  const std::vector<Eigen::Index> seen = FiniteColumns(from + to);
+  const auto [points, a, b, from_centre, to_centre] = CentredPairs(from, to);
   RigidFit fit;
-  if (seen.empty()) return fit;
-  const Eigen::Matrix3Xd points = from(Eigen::all, seen), images = to(Eigen::all, seen);
-  const Eigen::Vector3d from_centre = points.rowwise().mean(), to_centre = images.rowwise().mean();
-  const Eigen::Matrix3Xd a = About(points, from_centre), b = About(images, to_centre);
+  if (points.cols() == 0) return fit;
   const SpannedAxes spanned = AxesOf(points);
   const double rounding = 1e-12 * (from_centre.norm() + to_centre.norm());
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
@@ -63,12 +77,9 @@ RigidFit FitRigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to
 
 Eigen::Affine3d FitAffineMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
                                 const RigidFit& rigid) {
-  const std::vector<Eigen::Index> seen = FiniteColumns(from + to);
   Eigen::Affine3d motion(rigid.motion);
   if (rigid.span < 1) return motion;
-  const Eigen::Matrix3Xd points = from(Eigen::all, seen), images = to(Eigen::all, seen);
-  const Eigen::Vector3d from_centre = points.rowwise().mean(), to_centre = images.rowwise().mean();
-  const Eigen::Matrix3Xd a = About(points, from_centre), b = About(images, to_centre);
+  const auto [points, a, b, from_centre, to_centre] = CentredPairs(from, to);
   const SpannedAxes spanned = AxesOf(points);
   Eigen::Matrix3d linear = rigid.motion.linear();
   for (Eigen::Index k = 0; k < spanned.extent.size(); ++k) {

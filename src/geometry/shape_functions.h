@@ -12,6 +12,11 @@ namespace lacuna {
 inline constexpr std::array<std::array<int, 2>, 6> kTetEdges{
     {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
 
+// The nodes of the faces opposite corners 0 to 3, counter-clockwise from outside: three corners,
+// then, in a quadratic tetrahedron, the midpoints of their edges (0,1) (1,2) (2,0).
+inline constexpr std::array<std::array<int, 6>, 4> kTetFaces{
+    {{1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}, {0, 1, 3, 4, 8, 7}, {0, 2, 1, 6, 5, 4}}};
+
 // The shape functions N_a(ξ) of the 4 nodes (order 1) or 10 nodes (order 2) at the barycentric
 // coordinates ξ, four numbers with sum 1, in the node order of TetMesh:
 //   linear     N_a = ξ_a
@@ -22,9 +27,9 @@ Eigen::VectorXd ShapeValues(int order, const Eigen::Vector4d& barycentric);
 // The derivatives ∂N_a/∂ξ_k (nodes × 4), where the four coordinates are treated as independent.
 Eigen::MatrixX4d ShapeDerivatives(int order, const Eigen::Vector4d& barycentric);
 
-// Their derivatives along the three edges from corner 0 (nodes × 3), i.e. by the last three
-// coordinates ξ where the first one is 1 minus their sum. With the nodes x (3 × nodes), x · these
-// is the Jacobian ∂x/∂ξ.
+// The derivatives of the shape functions along the three edges from corner 0 (nodes × 3), i.e. by
+// the last three coordinates ξ where the first one is 1 minus their sum. With the nodes x (3 ×
+// nodes), x · these is the Jacobian ∂x/∂ξ.
 Eigen::MatrixX3d ShapeDerivativesAlongEdges(int order, const Eigen::Vector4d& barycentric);
 
 // The barycentric coordinates of the nodes of an element, 4 × nodes.

@@ -6,39 +6,17 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <tuple>
+#include <span>
 
 #include "core/disjoint_sets.h"
 #include "core/first_few.h"
+#include "geometry/component_volume.h"
+#include "geometry/half_edges.h"
 
 namespace lacuna {
 namespace {
 
 using Eigen::Vector3d;
-
-// A triangle's edge from corner k to corner k + 1, as the pair of its vertices.
-struct HalfEdge {
-  int low, high;
-  int triangle, corner;
-  bool forward;  // whether it runs from the lower to the higher vertex index
-  bool operator<(const HalfEdge& other) const {
-    return std::tie(low, high, triangle, corner) <
-           std::tie(other.low, other.high, other.triangle, other.corner);
-  }
-};
-
-std::vector<HalfEdge> SortedHalfEdges(const TriMesh& mesh) {
-  std::vector<HalfEdge> edges;
-  edges.reserve(3 * mesh.triangles.cols());
-  for (int t = 0; t < mesh.triangles.cols(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const int from = mesh.triangles(k, t), to = mesh.triangles((k + 1) % 3, t);
-      edges.push_back({std::min(from, to), std::max(from, to), t, k, from < to});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
 
 // The corner of `triangle` at `vertex`, numbered as 3 · triangle + local corner.
 int CornerAt(const TriMesh& mesh, int triangle, int vertex) {
@@ -65,31 +43,29 @@ class Examination {
   Vector3d Vertex(int v) const { return mesh_.vertices.col(v); }
 
   void Edges() {
-    const std::vector<HalfEdge> edges = SortedHalfEdges(mesh_);
+    const std::vector<HalfEdge> half_edges = SortedHalfEdges(mesh_.triangles);
     std::vector<HalfEdge> boundary;
     double sum = 0;
-    report_.min_edge = edges.empty() ? 0 : std::numeric_limits<double>::infinity();
-    for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-      const HalfEdge& edge = edges[begin];
-      while (end < edges.size() && edges[end].low == edge.low && edges[end].high == edge.high) {
-        ++end;
-      }
+    report_.min_edge = half_edges.empty() ? 0 : std::numeric_limits<double>::infinity();
+    ForEachEdge(half_edges, [&](std::span<const HalfEdge> edge) {
+      const HalfEdge& first = edge.front();
       ++edge_count_;
-      const double length = (Vertex(edge.high) - Vertex(edge.low)).norm();
+      const double length = (Vertex(first.high) - Vertex(first.low)).norm();
       sum += length;
       report_.min_edge = std::min(report_.min_edge, length);
       report_.max_edge = std::max(report_.max_edge, length);
-      const Vector3d middle = 0.5 * (Vertex(edge.low) + Vertex(edge.high));
-      for (size_t i = begin + 1; i < end; ++i) triangles_.Merge(edge.triangle, edges[i].triangle);
-      if (end - begin == 1) boundary.push_back(edge);
-      if (end - begin > 2) report_.nonmanifold_edges.push_back(middle);
-      if (end - begin != 2) continue;
-      const HalfEdge& twin = edges[begin + 1];
-      if (edge.forward == twin.forward) report_.misoriented_edges.push_back(middle);
-      for (const int v : {edge.low, edge.high}) {
-        corners_.Merge(CornerAt(mesh_, edge.triangle, v), CornerAt(mesh_, twin.triangle, v));
+      const Vector3d middle = 0.5 * (Vertex(first.low) + Vertex(first.high));
+      for (const HalfEdge& other : edge.subspan(1))
+        triangles_.Merge(first.triangle, other.triangle);
+      if (edge.size() == 1) boundary.push_back(first);
+      if (edge.size() > 2) report_.nonmanifold_edges.push_back(middle);
+      if (edge.size() != 2) return;
+      const HalfEdge& twin = edge[1];
+      if (first.forward == twin.forward) report_.misoriented_edges.push_back(middle);
+      for (const int v : {first.low, first.high}) {
+        corners_.Merge(CornerAt(mesh_, first.triangle, v), CornerAt(mesh_, twin.triangle, v));
       }
-    }
+    });
     if (edge_count_ > 0) report_.mean_edge = sum / edge_count_;
     BoundaryLoops(boundary);
   }
@@ -154,36 +130,36 @@ class Examination {
   }
 
   void Components() {
-    const Vector3d origin = report_.triangles > 0 ? BoundingBox(mesh_.vertices).center().eval()
-                                                  : Vector3d::Zero().eval();
-    const double reach = 0.5 * BoundingBoxDiagonal(mesh_.vertices);
-    std::vector<double> volume(report_.triangles, 0), area(report_.triangles, 0);
-    std::vector<Vector3d> centre(report_.triangles, Vector3d::Zero());
-    std::vector<int> size(report_.triangles, 0);
-    std::vector<bool> is_open(report_.triangles, false);
-    for (int t = 0; t < report_.triangles; ++t) {
-      const int component = triangles_.Find(t);
-      const Vector3d a = Vertex(mesh_.triangles(0, t)) - origin;
-      const Vector3d b = Vertex(mesh_.triangles(1, t)) - origin;
-      const Vector3d c = Vertex(mesh_.triangles(2, t)) - origin;
-      volume[component] += a.dot(b.cross(c)) / 6;
-      area[component] += 0.5 * (b - a).cross(c - a).norm();
-      centre[component] += (a + b + c) / 3 + origin;
-      ++size[component];
-    }
+    // The triangles of each component, at the place of the one that represents it.
+    std::vector<std::vector<int>> members(static_cast<size_t>(report_.triangles));
+    for (int t = 0; t < report_.triangles; ++t) members[triangles_.Find(t)].push_back(t);
+    std::vector<bool> is_open(members.size(), false);
     for (const int t : has_boundary_) is_open[triangles_.Find(t)] = true;
-    for (int t = 0; t < report_.triangles; ++t) {
-      if (size[t] == 0) continue;
+    for (size_t component = 0; component < members.size(); ++component) {
+      if (members[component].empty()) continue;
       ++report_.components;
-      if (is_open[t]) continue;
-      // A shift of the triangles by the rounding of their coordinates changes the volume by this.
-      const double rounding = 8 * std::numeric_limits<double>::epsilon() * reach * area[t];
-      if (std::abs(volume[t]) <= rounding) {
-        report_.flat_components.push_back(centre[t] / size[t]);
-      } else if (volume[t] < 0) {
-        report_.inside_out_components.push_back(centre[t] / size[t]);
+      if (!is_open[component]) ClosedComponent(members[component]);
+    }
+  }
+
+  void ClosedComponent(const std::vector<int>& triangles) {
+    Eigen::AlignedBox3d box;
+    Vector3d centre = Vector3d::Zero();
+    for (const int t : triangles) {
+      for (const int v : mesh_.triangles.col(t)) {
+        box.extend(Vertex(v));
+        centre += Vertex(v);
       }
     }
+    centre /= 3 * static_cast<double>(triangles.size());
+    ComponentVolume volume(box);
+    for (const int t : triangles)
+      volume.Add(Vertex(mesh_.triangles(0, t)), Vertex(mesh_.triangles(1, t)),
+                 Vertex(mesh_.triangles(2, t)));
+    if (volume.IsFlat())
+      report_.flat_components.push_back(centre);
+    else if (volume.IsNegative())
+      report_.inside_out_components.push_back(centre);
   }
 
   const TriMesh& mesh_;
@@ -198,11 +174,11 @@ std::string Place(const Vector3d& place) {
 }
 
 // "3 × non-manifold edge at (…), (…), (…)"
-void DescribePlaces(const char* what, const Places& places, std::vector<std::string>& faults) {
+void DescribePlaces(const char* what, const Places& places, std::vector<std::string>* faults) {
   if (places.empty()) return;
   std::vector<std::string> shown;
   for (const Vector3d& place : places) shown.push_back(Place(place));
-  faults.push_back(fmt::format("{} × {} at {}", places.size(), what, FirstFew(shown)));
+  faults->push_back(fmt::format("{} × {} at {}", places.size(), what, FirstFew(shown)));
 }
 
 }  // namespace
@@ -225,19 +201,19 @@ std::string DescribeFaults(const SurfaceReport& report) {
         "{} hole{}, the longest of {:.4g} m around {}", report.boundary_loops.size(),
         report.boundary_loops.size() > 1 ? "s" : "", longest.length, Place(longest.centre)));
   }
-  DescribePlaces("edge of more than two triangles", report.nonmanifold_edges, faults);
-  DescribePlaces("non-manifold vertex", report.nonmanifold_vertices, faults);
-  DescribePlaces("edge between opposite orientations", report.misoriented_edges, faults);
-  DescribePlaces("triangle without area", report.degenerate_triangles, faults);
+  DescribePlaces("edge of more than two triangles", report.nonmanifold_edges, &faults);
+  DescribePlaces("non-manifold vertex", report.nonmanifold_vertices, &faults);
+  DescribePlaces("edge between opposite orientations", report.misoriented_edges, &faults);
+  DescribePlaces("triangle without area", report.degenerate_triangles, &faults);
   if (report.misoriented_edges.empty()) {
-    DescribePlaces("component turned inside out", report.inside_out_components, faults);
-    DescribePlaces("closed component without volume", report.flat_components, faults);
+    DescribePlaces("component turned inside out", report.inside_out_components, &faults);
+    DescribePlaces("closed component without volume", report.flat_components, &faults);
   }
   Places crossings;
   for (const SelfIntersection& crossing : report.self_intersections) {
     crossings.push_back(crossing.place);
   }
-  DescribePlaces("self-intersection", crossings, faults);
+  DescribePlaces("self-intersection", crossings, &faults);
   if (!report.self_intersections_tested) faults.push_back("self-intersections were not tested");
   return fmt::format("{}", fmt::join(faults, "; "));
 }

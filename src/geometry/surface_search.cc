@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "geometry/median_split_tree.h"
 #include "geometry/nearest.h"
 
 namespace lacuna {
@@ -15,25 +16,29 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kLeafSize = 4;
-constexpr int kBlock = 256;
+constexpr int kQueriesPerTask = 256;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Triangle {
   Vector3d a, b, c;
   int index;  // index of the triangle in the mesh
+  Eigen::AlignedBox3d Box() const { return Eigen::AlignedBox3d(a).extend(b).extend(c); }
+  double Place(Eigen::Index axis) const { return a[axis] + b[axis] + c[axis]; }
 };
 
-// Nodes are stored in depth-first order, so the left child follows its parent.
-struct Node {
-  Vector3d min, max;
-  int right = 0;  // inner node: the right child
-  int begin = 0;  // leaf: its triangles
-  int count = 0;  // leaf: > 0
-};
+std::vector<Triangle> TrianglesOf(const TriMesh& mesh) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(mesh.triangles.cols());
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const auto corners = mesh.triangles.col(t);
+    triangles.push_back({mesh.vertices.col(corners(0)), mesh.vertices.col(corners(1)),
+                         mesh.vertices.col(corners(2)), static_cast<int>(t)});
+  }
+  return triangles;
+}
 
-double SquaredDistance(const Node& node, const Vector3d& query) {
-  return (node.min - query).cwiseMax(query - node.max).cwiseMax(0).squaredNorm();
+double SquaredDistance(const Eigen::AlignedBox3d& box, const Vector3d& query) {
+  return (box.min() - query).cwiseMax(query - box.max()).cwiseMax(0).squaredNorm();
 }
 
 // The point on the segment from a to b that is nearest to the origin, as a fraction of the segment.
@@ -69,59 +74,21 @@ struct Hit {
   Vector3d point = Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
+// The lowest index wins among equally near triangles, whatever the order of traversal.
+void Consider(const Triangle& t, const Vector3d& query, Hit* best) {
+  const Vector3d barycentric = NearestOnTriangle(t.a - query, t.b - query, t.c - query);
+  const Vector3d point = barycentric[0] * t.a + barycentric[1] * t.b + barycentric[2] * t.c;
+  const double squared_distance = (point - query).squaredNorm();
+  if (squared_distance < best->squared_distance ||
+      (squared_distance == best->squared_distance && t.index < best->triangle)) {
+    *best = {squared_distance, t.index, barycentric, point};
+  }
+}
+
 }  // namespace
 
-// A bounding volume hierarchy with median splits.
-struct SurfaceSearch::Tree {
-  explicit Tree(const TriMesh& mesh) {
-    triangles.reserve(mesh.triangles.cols());
-    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-      const auto corners = mesh.triangles.col(t);
-      triangles.push_back({mesh.vertices.col(corners(0)), mesh.vertices.col(corners(1)),
-                           mesh.vertices.col(corners(2)), static_cast<int>(t)});
-    }
-    nodes.reserve(triangles.size());
-    Build(0, static_cast<int>(triangles.size()));
-  }
-
-  void Build(int begin, int end) {
-    Eigen::AlignedBox3d box, centroids;
-    for (int i = begin; i < end; ++i) {
-      const Triangle& t = triangles[i];
-      box.extend(t.a).extend(t.b).extend(t.c);
-      centroids.extend(t.a + t.b + t.c);
-    }
-    const int self = static_cast<int>(nodes.size());
-    nodes.push_back({box.min(), box.max()});
-    if (end - begin <= kLeafSize) {
-      nodes[self].begin = begin;
-      nodes[self].count = end - begin;
-      return;
-    }
-    Eigen::Index axis;
-    centroids.sizes().maxCoeff(&axis);
-    const int middle = begin + (end - begin) / 2;
-    std::nth_element(triangles.begin() + begin, triangles.begin() + middle, triangles.begin() + end,
-                     [axis](const Triangle& s, const Triangle& t) {
-                       const double place_s = s.a[axis] + s.b[axis] + s.c[axis];
-                       const double place_t = t.a[axis] + t.b[axis] + t.c[axis];
-                       return place_s != place_t ? place_s < place_t : s.index < t.index;
-                     });
-    Build(begin, middle);
-    nodes[self].right = static_cast<int>(nodes.size());
-    Build(middle, end);
-  }
-
-  // The lowest index wins among equally near triangles, whatever the order of traversal.
-  void Consider(const Triangle& t, const Vector3d& query, Hit& best) const {
-    const Vector3d barycentric = NearestOnTriangle(t.a - query, t.b - query, t.c - query);
-    const Vector3d point = barycentric[0] * t.a + barycentric[1] * t.b + barycentric[2] * t.c;
-    const double squared_distance = (point - query).squaredNorm();
-    if (squared_distance < best.squared_distance ||
-        (squared_distance == best.squared_distance && t.index < best.triangle)) {
-      best = {squared_distance, t.index, barycentric, point};
-    }
-  }
+struct SurfaceSearch::Tree : MedianSplitTree<Triangle> {
+  using MedianSplitTree::MedianSplitTree;
 
   Hit Nearest(const Vector3d& query) const {
     struct Visit {
@@ -135,27 +102,24 @@ struct SurfaceSearch::Tree {
     while (depth > 0) {
       const Visit visit = pending[--depth];
       if (visit.squared_distance > best.squared_distance) continue;
-      const Node& node = nodes[visit.node];
+      const Node& node = nodes()[visit.node];
       for (int i = node.begin; i < node.begin + node.count; ++i) {
-        Consider(triangles[i], query, best);
+        Consider(items()[i], query, &best);
       }
       if (node.count > 0) continue;
-      Visit near{visit.node + 1, SquaredDistance(nodes[visit.node + 1], query)};
-      Visit far{node.right, SquaredDistance(nodes[node.right], query)};
+      Visit near{visit.node + 1, SquaredDistance(nodes()[visit.node + 1].box, query)};
+      Visit far{node.right, SquaredDistance(nodes()[node.right].box, query)};
       if (far.squared_distance < near.squared_distance) std::swap(near, far);
       pending[depth++] = far;
       pending[depth++] = near;
     }
     return best;
   }
-
-  std::vector<Triangle> triangles;
-  std::vector<Node> nodes;
 };
 
 SurfaceSearch::SurfaceSearch(const TriMesh& mesh) {
   CHECK_GT(mesh.triangles.cols(), 0) << "there is no nearest point on an empty surface";
-  tree_ = std::make_unique<Tree>(mesh);
+  tree_ = std::make_unique<Tree>(TrianglesOf(mesh));
 }
 SurfaceSearch::~SurfaceSearch() = default;
 SurfaceSearch::SurfaceSearch(SurfaceSearch&&) noexcept = default;
@@ -165,7 +129,7 @@ SurfaceHits SurfaceSearch::Nearest(const Eigen::Matrix3Xd& queries) const {
   const Eigen::Index count = queries.cols();
   SurfaceHits hits{Eigen::Matrix3Xd(3, count), Eigen::VectorXi(count), Eigen::Matrix3Xd(3, count),
                    Eigen::VectorXd(count)};
-  ParallelFor(count, kBlock, [&](int64_t i) {
+  ParallelFor(count, kQueriesPerTask, [&](int64_t i) {
     const Hit hit = tree_->Nearest(queries.col(i));
     hits.point.col(i) = hit.point;
     hits.triangle(i) = hit.triangle;

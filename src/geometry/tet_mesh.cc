@@ -11,19 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/face_shape_functions.h"
 #include "geometry/shape_functions.h"
+#include "geometry/used_indices.h"
 
 namespace lacuna {
 namespace {
-
-// The faces opposite corners 0..3, counter-clockwise from outside: three corners, then the
-// midpoints of their edges (0,1) (1,2) (2,0).
-constexpr std::array<std::array<int, 6>, 4> kFaces{
-    {{1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}, {0, 1, 3, 4, 8, 7}, {0, 2, 1, 6, 5, 4}}};
-
-// A six-node face as four triangles of its local nodes.
-constexpr std::array<std::array<int, 3>, 4> kFaceQuarters{
-    {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
 
 // One of the 6 m edges of the tetrahedra, with its position in that list. Sorting by the edge makes
 // equal edges neighbours.
@@ -62,7 +55,7 @@ std::vector<int64_t> BoundaryPlaces(const Eigen::MatrixXi& tets) {
   std::vector<FacePlace> places;
   places.reserve(4 * tets.cols());
   for (Eigen::Index e = 0; e < tets.cols(); ++e) {
-    for (const auto& face : kFaces) {
+    for (const auto& face : kTetFaces) {
       std::array<int, 3> corners{tets(face[0], e), tets(face[1], e), tets(face[2], e)};
       std::sort(corners.begin(), corners.end());
       places.push_back({corners, static_cast<int64_t>(places.size())});
@@ -136,21 +129,14 @@ BoundarySurface ExtractBoundary(const TetMesh& mesh) {
   BoundarySurface boundary;
   boundary.faces.resize(nodes_per_face, places.size());
   for (size_t f = 0; f < places.size(); ++f) {
-    const auto& face = kFaces[places[f] % 4];
+    const auto& face = kTetFaces[places[f] % 4];
     for (int i = 0; i < nodes_per_face; ++i) {
       boundary.faces(i, f) = mesh.tets(face[i], places[f] / 4);
     }
   }
 
-  std::vector<int> vertex_of_node(mesh.NodeCount(), -1);
-  for (const int node : boundary.faces.reshaped()) vertex_of_node[node] = 0;
-  std::vector<int> node_of_vertex;
-  for (Eigen::Index node = 0; node < mesh.NodeCount(); ++node) {
-    if (vertex_of_node[node] < 0) continue;
-    vertex_of_node[node] = static_cast<int>(node_of_vertex.size());
-    node_of_vertex.push_back(static_cast<int>(node));
-  }
-  boundary.node = Eigen::Map<const Eigen::VectorXi>(node_of_vertex.data(), node_of_vertex.size());
+  const UsedIndices vertices = FindUsedIndices(boundary.faces, mesh.NodeCount());
+  boundary.node = Eigen::Map<const Eigen::VectorXi>(vertices.used.data(), vertices.used.size());
 
   boundary.surface.triangles.resize(3, triangles_per_face * places.size());
   for (Eigen::Index f = 0; f < boundary.faces.cols(); ++f) {
@@ -158,7 +144,7 @@ BoundarySurface ExtractBoundary(const TetMesh& mesh) {
       for (int corner = 0; corner < 3; ++corner) {
         const int local = mesh.Order() == 2 ? kFaceQuarters[quarter][corner] : corner;
         boundary.surface.triangles(corner, triangles_per_face * f + quarter) =
-            vertex_of_node[boundary.faces(local, f)];
+            vertices.number[boundary.faces(local, f)];
       }
     }
   }

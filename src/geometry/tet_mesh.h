@@ -36,8 +36,8 @@ double VolumeOfCurvature(const TetMesh& mesh);
 // largest coordinate c; −1 if there is none. ReadTetMesh refuses such a mesh.
 Eigen::Index FindFlatTet(const TetMesh& mesh);
 
-// The same mesh with an additional node at the midpoint of each edge; corner nodes keep their
-// numbers. A mesh that is already quadratic is returned unchanged.
+// The quadratic mesh of a linear one, with an additional node at the midpoint of each edge; corner
+// nodes keep their numbers. A mesh that is already quadratic is returned unchanged.
 TetMesh ToQuadratic(const TetMesh& linear);
 
 // The boundary of a mesh, oriented outward. For order 2 each boundary face becomes four triangles,

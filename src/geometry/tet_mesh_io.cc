@@ -17,33 +17,33 @@ namespace lacuna {
 namespace {
 
 // Reads the four node numbers of a tetrahedron, counted from `first`, from the rest of the line.
-void AddTet(TextScanner& scanner, long long first, TetSoup& soup) {
+void AddTet(TextScanner* scanner, long long first, TetSoup* soup) {
   std::array<int, 4> tet;
   for (int& node : tet) {
-    const long long number = scanner.Integer("the number of a node");
-    if (soup.nodes.empty()) {
-      scanner.Fail(fmt::format("there is no node {}: none has been read", number));
+    const long long number = scanner->Integer("the number of a node");
+    if (soup->nodes.empty()) {
+      scanner->Fail(fmt::format("there is no node {}: none has been read", number));
     }
-    if (number < first || number - first >= static_cast<long long>(soup.nodes.size())) {
-      scanner.Fail(fmt::format("there is no node {}: they count from {} to {}", number, first,
-                               first + static_cast<long long>(soup.nodes.size()) - 1));
+    if (number < first || number - first >= static_cast<long long>(soup->nodes.size())) {
+      scanner->Fail(fmt::format("there is no node {}: they count from {} to {}", number, first,
+                                first + static_cast<long long>(soup->nodes.size()) - 1));
     }
     node = static_cast<int>(number - first);
   }
-  soup.Add(tet, scanner.Line());
+  soup->Add(tet, scanner->Line());
 }
 
-// The same where the line must end behind them: a tetrahedron of ten nodes would otherwise lose six
+// The same where the line must end after them: a tetrahedron of ten nodes would otherwise lose six
 // in silence.
-void AddWholeTet(TextScanner& scanner, TetSoup& soup) {
+void AddWholeTet(TextScanner* scanner, TetSoup* soup) {
   AddTet(scanner, 0, soup);
-  if (!scanner.AtLineEnd()) scanner.Fail("a tetrahedron has more than 4 nodes");
+  if (!scanner->AtLineEnd()) scanner->Fail("a tetrahedron has more than 4 nodes");
 }
 
-// Lines behind those that were counted would otherwise be left out in silence.
-void ExpectFileEnd(TextScanner& scanner, long long count, const char* what) {
-  if (scanner.NextLine()) {
-    scanner.Fail(fmt::format("a line follows, but the number of {} is {}", what, count));
+// Lines after those that were counted would otherwise be left out in silence.
+void ExpectFileEnd(TextScanner* scanner, long long count, const char* what) {
+  if (scanner->NextLine()) {
+    scanner->Fail(fmt::format("a line follows, but the number of {} is {}", what, count));
   }
 }
 
@@ -58,7 +58,7 @@ TetSoup ReadVertexTetLines(const std::filesystem::path& file) {
         scanner.Fail(fmt::format("got \"{}\"; expected v or t", kind));
       }
       if (kind == "v" && !reads_tets) soup.nodes.push_back(scanner.Point("a coordinate"));
-      if (kind == "t" && reads_tets) AddWholeTet(scanner, soup);
+      if (kind == "t" && reads_tets) AddWholeTet(&scanner, &soup);
     }
   }
   return soup;
@@ -68,17 +68,17 @@ TetSoup ReadCountedLists(const std::filesystem::path& file) {
   TextScanner scanner(file);
   TetSoup soup;
   scanner.ExpectLine("the numbers of nodes and tetrahedra");
-  const long long nodes = Count(scanner, "the number of nodes");
-  const long long tets = Count(scanner, "the number of tetrahedra");
+  const long long nodes = scanner.Count("the number of nodes");
+  const long long tets = scanner.Count("the number of tetrahedra");
   for (long long n = 0; n < nodes; ++n) {
     scanner.ExpectLine(fmt::format("node {} of {}", n + 1, nodes));
     soup.nodes.push_back(scanner.Point("a coordinate"));
   }
   for (long long e = 0; e < tets; ++e) {
     scanner.ExpectLine(fmt::format("tetrahedron {} of {}", e + 1, tets));
-    AddWholeTet(scanner, soup);
+    AddWholeTet(&scanner, &soup);
   }
-  ExpectFileEnd(scanner, tets, "tetrahedra");
+  ExpectFileEnd(&scanner, tets, "tetrahedra");
   return soup;
 }
 
@@ -87,17 +87,17 @@ TetSoup ReadTetGen(std::filesystem::path file) {
   NodeNumbers numbers;
   TextScanner node_scanner(file.replace_extension(".node"), '#');
   node_scanner.ExpectLine("the number of nodes");
-  const long long nodes = Count(node_scanner, "the number of nodes");
+  const long long nodes = node_scanner.Count("the number of nodes");
   if (node_scanner.Integer("the dimension") != 3) node_scanner.Fail("expected dimension 3");
   for (long long n = 0; n < nodes; ++n) {
     node_scanner.ExpectLine(fmt::format("node {} of {}", n + 1, nodes));
     numbers.Add(node_scanner.Integer("the number of the node"), node_scanner);
     soup.nodes.push_back(node_scanner.Point("a coordinate"));
   }
-  ExpectFileEnd(node_scanner, nodes, "nodes");
+  ExpectFileEnd(&node_scanner, nodes, "nodes");
   TextScanner scanner(file.replace_extension(".ele"), '#');
   scanner.ExpectLine("the number of tetrahedra");
-  const long long tets = Count(scanner, "the number of tetrahedra");
+  const long long tets = scanner.Count("the number of tetrahedra");
   const long long corners = scanner.Integer("the nodes per tetrahedron");
   if (corners != 4) {
     scanner.Fail(fmt::format("tetrahedra of {} nodes are not read, only of 4", corners));
@@ -111,7 +111,7 @@ TetSoup ReadTetGen(std::filesystem::path file) {
     }
     soup.Add(tet, scanner.Line());
   }
-  ExpectFileEnd(scanner, tets, "tetrahedra");
+  ExpectFileEnd(&scanner, tets, "tetrahedra");
   return soup;
 }
 
@@ -130,9 +130,9 @@ TetSoup ReadMedit(const std::filesystem::path& file) {
     const std::string keyword(scanner.Word("a keyword"));
     const auto count = [&] {
       if (scanner.AtLineEnd()) scanner.ExpectLine("a number after " + keyword);
-      return Count(scanner, "a number of lines");
+      return scanner.Count("a number of lines");
     };
-    // Numbers behind the lines that were counted would otherwise be taken for a section.
+    // Numbers after the lines that were counted would otherwise be taken for a section.
     if (std::isalpha(static_cast<unsigned char>(keyword[0])) == 0) {
       scanner.Fail(fmt::format("got \"{}\"; expected a keyword such as Vertices", keyword));
     }
@@ -151,7 +151,7 @@ TetSoup ReadMedit(const std::filesystem::path& file) {
       const long long tets = count();
       for (long long e = 0; e < tets; ++e) {
         scanner.ExpectLine(fmt::format("tetrahedron {} of {}", e + 1, tets));
-        AddTet(scanner, 1, soup);
+        AddTet(&scanner, 1, &soup);
       }
     } else {
       const long long lines = count();

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "geometry/shape_functions.h"
+#include "geometry/used_indices.h"
 
 namespace lacuna {
 namespace {
@@ -19,9 +20,9 @@ namespace {
 
 // Removes the tetrahedra that list the same nodes as an earlier one in the same order, and returns
 // their number.
-size_t DropRepetitions(TetSoup& soup) {
-  const size_t count = soup.tets.size();
-  const auto nodes = [&](size_t e) { return std::tie(soup.sizes[e], soup.tets[e]); };
+size_t DropRepetitions(TetSoup* soup) {
+  const size_t count = soup->tets.size();
+  const auto nodes = [&](size_t e) { return std::tie(soup->sizes[e], soup->tets[e]); };
   std::vector<size_t> order(count);
   std::iota(order.begin(), order.end(), size_t{0});
   std::sort(order.begin(), order.end(), [&](size_t e, size_t other) {
@@ -33,14 +34,14 @@ size_t DropRepetitions(TetSoup& soup) {
   size_t kept = 0;
   for (size_t e = 0; e < count; ++e) {
     if (is_repeated[e]) continue;
-    soup.tets[kept] = soup.tets[e];
-    soup.sizes[kept] = soup.sizes[e];
-    soup.lines[kept] = soup.lines[e];
+    soup->tets[kept] = soup->tets[e];
+    soup->sizes[kept] = soup->sizes[e];
+    soup->lines[kept] = soup->lines[e];
     ++kept;
   }
-  soup.tets.resize(kept);
-  soup.sizes.resize(kept);
-  soup.lines.resize(kept);
+  soup->tets.resize(kept);
+  soup->sizes.resize(kept);
+  soup->lines.resize(kept);
   return count - kept;
 }
 
@@ -102,22 +103,22 @@ void RefuseExchangedMidpoints(const TetSoup& soup, const std::filesystem::path& 
 
 // Reorients the tetrahedra of negative volume and returns their number; refuses flat ones, and
 // those that lie so far out that a product of three distances may overflow.
-Eigen::Index TurnPositive(const TetSoup& soup, const std::filesystem::path& file, TetMesh& mesh) {
-  for (Eigen::Index e = 0; e < mesh.TetCount(); ++e)
-    for (const int node : mesh.tets.col(e))
-      if (mesh.nodes.col(node).cwiseAbs().maxCoeff() > kFarthestCoordinate)
+Eigen::Index TurnPositive(const TetSoup& soup, const std::filesystem::path& file, TetMesh* mesh) {
+  for (Eigen::Index e = 0; e < mesh->TetCount(); ++e)
+    for (const int node : mesh->tets.col(e))
+      if (mesh->nodes.col(node).cwiseAbs().maxCoeff() > kFarthestCoordinate)
         Fail(file, soup.lines[e],
              fmt::format("tetrahedron {} has a coordinate beyond {}", e + 1, kFarthestCoordinate));
-  if (const Eigen::Index flat = FindFlatTet(mesh); flat >= 0)
+  if (const Eigen::Index flat = FindFlatTet(*mesh); flat >= 0)
     Fail(file, soup.lines[flat], fmt::format("tetrahedron {} has no volume", flat + 1));
-  const Eigen::VectorXd volumes = TetVolumes(mesh);
+  const Eigen::VectorXd volumes = TetVolumes(*mesh);
   Eigen::Index turned = 0;
-  for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
+  for (Eigen::Index e = 0; e < mesh->TetCount(); ++e) {
     if (volumes(e) > 0) continue;
     ++turned;
-    auto tet = mesh.tets.col(e);
+    auto tet = mesh->tets.col(e);
     std::swap(tet(0), tet(1));
-    if (mesh.Order() == 2) {
+    if (mesh->Order() == 2) {
       std::swap(tet(5), tet(6));  // (1,2) and (0,2)
       std::swap(tet(7), tet(8));  // (0,3) and (1,3)
     }
@@ -148,10 +149,8 @@ void RefuseOverlaps(const TetSoup& soup, const std::filesystem::path& file, cons
   faces.reserve(4 * mesh.TetCount());
   for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
     const auto t = mesh.tets.col(e);
-    faces.push_back(MakeFace(t(1), t(2), t(3), e));
-    faces.push_back(MakeFace(t(0), t(3), t(2), e));
-    faces.push_back(MakeFace(t(0), t(1), t(3), e));
-    faces.push_back(MakeFace(t(0), t(2), t(1), e));
+    for (const auto& face : kTetFaces)
+      faces.push_back(MakeFace(t(face[0]), t(face[1]), t(face[2]), e));
   }
   std::sort(faces.begin(), faces.end());
   for (size_t i = 1; i < faces.size(); ++i) {
@@ -168,22 +167,16 @@ void RefuseOverlaps(const TetSoup& soup, const std::filesystem::path& file, cons
   }
 }
 
-void DropUnusedNodes(TetMeshFile& result) {
-  TetMesh& mesh = result.mesh;
-  std::vector<int> number(mesh.NodeCount(), -1);
-  for (const int node : mesh.tets.reshaped()) number[node] = 0;
-  std::vector<int> kept;
-  for (int node = 0; node < mesh.NodeCount(); ++node) {
-    if (number[node] < 0) continue;
-    number[node] = static_cast<int>(kept.size());
-    kept.push_back(node);
-  }
-  const Eigen::Index dropped = mesh.NodeCount() - static_cast<Eigen::Index>(kept.size());
-  result.node_in_file = Eigen::Map<const Eigen::VectorXi>(kept.data(), kept.size());
+void DropUnusedNodes(TetMeshFile* result) {
+  TetMesh& mesh = result->mesh;
+  const UsedIndices nodes = FindUsedIndices(mesh.tets, mesh.NodeCount());
+  const auto kept = static_cast<Eigen::Index>(nodes.used.size());
+  const Eigen::Index dropped = mesh.NodeCount() - kept;
+  result->node_in_file = Eigen::Map<const Eigen::VectorXi>(nodes.used.data(), kept);
   if (dropped == 0) return;
-  result.notes.push_back(fmt::format("dropped {} nodes that no tetrahedron uses", dropped));
-  mesh.nodes = mesh.nodes(Eigen::all, kept).eval();
-  for (int& node : mesh.tets.reshaped()) node = number[node];
+  result->notes.push_back(fmt::format("dropped {} nodes that no tetrahedron uses", dropped));
+  mesh.nodes = mesh.nodes(Eigen::all, nodes.used).eval();
+  mesh.tets = nodes.Renumbered(mesh.tets);
 }
 
 }  // namespace
@@ -212,7 +205,7 @@ TetMeshFile FinishTetMesh(TetSoup soup, const std::filesystem::path& file) {
              "body with tetrahedra of 4 or 10 nodes, or remove elements that do not belong "
              "to it",
              soup.others, soup.first_other));
-  if (const size_t repeated = DropRepetitions(soup); repeated > 0)
+  if (const size_t repeated = DropRepetitions(&soup); repeated > 0)
     result.notes.push_back(
         fmt::format("dropped {} tetrahedra that repeat an earlier one", repeated));
   TetMesh& mesh = result.mesh;
@@ -221,13 +214,13 @@ TetMeshFile FinishTetMesh(TetSoup soup, const std::filesystem::path& file) {
   for (size_t n = 0; n < soup.nodes.size(); ++n) mesh.nodes.col(n) = soup.nodes[n];
 
   RefuseExchangedMidpoints(soup, file, mesh);
-  const Eigen::Index turned = TurnPositive(soup, file, mesh);
+  const Eigen::Index turned = TurnPositive(soup, file, &mesh);
   if (turned > 0) {
     result.notes.push_back(fmt::format("reoriented {} of {} tetrahedra that had a negative volume",
                                        turned, mesh.TetCount()));
   }
   RefuseOverlaps(soup, file, mesh);
-  DropUnusedNodes(result);
+  DropUnusedNodes(&result);
   return result;
 }
 

@@ -3,26 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
-#include <system_error>
 
 #include "core/error.h"
 #include "core/letter_case.h"
+#include "core/parsed_word.h"
 #include "core/text_file.h"
 
 namespace lacuna {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\v\f";
-
-template <typename T>
-bool Parse(std::string_view word, T& value) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc() && end == word.data() + word.size();
-}
 
 }  // namespace
 
@@ -76,17 +67,23 @@ std::string_view TextScanner::WordAnywhere(const char* what) {
 
 double TextScanner::Number(const char* what) {
   const std::string_view word = Word(what);
-  double value = 0;
-  if (!Parse(word, value)) Fail(fmt::format("got \"{}\"; expected {}", word, what));
-  if (!std::isfinite(value)) Fail(fmt::format("{} is not finite: {}", what, word));
-  return value;
+  const auto value = ParseSignedWord<double>(word);
+  if (!value) Fail(fmt::format("got \"{}\"; expected {}", word, what));
+  if (!std::isfinite(*value)) Fail(fmt::format("{} is not finite: {}", what, word));
+  return *value;
 }
 
 long long TextScanner::Integer(const char* what) {
   const std::string_view word = Word(what);
-  long long value = 0;
-  if (!Parse(word, value)) Fail(fmt::format("got \"{}\"; expected {}", word, what));
-  return value;
+  const auto value = ParseSignedWord<long long>(word);
+  if (!value) Fail(fmt::format("got \"{}\"; expected {}", word, what));
+  return *value;
+}
+
+long long TextScanner::Count(const char* what) {
+  const long long count = Integer(what);
+  if (count < 0) Fail(fmt::format("got {}; expected {}", count, what));
+  return count;
 }
 
 Eigen::Vector3d TextScanner::Point(const char* what) {

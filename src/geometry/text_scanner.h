@@ -20,7 +20,8 @@ class TextScanner {
 
   // Moves to the next line that is not blank; returns false at the end of the file.
   bool NextLine();
-  // The same, but throws InputError at the end of the file, naming the missing `what`.
+  // NextLine() where there must be one: throws InputError at the end of the file, naming the
+  // missing `what`.
   void ExpectLine(const std::string& what);
 
   // Read the next item of the current line. Each throws InputError, naming the line and `what` was
@@ -28,6 +29,7 @@ class TextScanner {
   std::string_view Word(const char* what);
   double Number(const char* what);
   long long Integer(const char* what);
+  long long Count(const char* what);  // a whole number that is not negative
   Eigen::Vector3d Point(const char* what);
   bool AtLineEnd();
   int WordsLeft() const;  // on the current line

@@ -93,7 +93,7 @@ constexpr size_t kMostCorners = 10'000;
 
 // Cuts each polygon into triangles.
 Eigen::Matrix3Xi TrianglesOf(const std::filesystem::path& file, const PolygonSoup& soup,
-                             std::vector<std::string>& notes) {
+                             std::vector<std::string>* notes) {
   std::vector<int> corners;
   size_t larger = 0;
   for (size_t f = 0; f < soup.polygons.size(); ++f) {
@@ -117,14 +117,14 @@ Eigen::Matrix3Xi TrianglesOf(const std::filesystem::path& file, const PolygonSou
     for (const std::array<int, 3>& triangle : CutPolygon(places))
       for (const int k : triangle) corners.push_back(static_cast<int>(polygon[k]));
   }
-  if (larger > 0) notes.push_back(fmt::format("cut {} polygons into triangles", larger));
+  if (larger > 0) notes->push_back(fmt::format("cut {} polygons into triangles", larger));
   return Eigen::Map<const Eigen::Matrix3Xi>(corners.data(), 3, corners.size() / 3);
 }
 
 template <typename T>
-void AppendBytes(const T& value, std::string& bytes) {
+void AppendBytes(const T& value, std::string* bytes) {
   static_assert(std::endian::native == std::endian::little);
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+  bytes->append(reinterpret_cast<const char*>(&value), sizeof(T));
 }
 
 }  // namespace
@@ -134,7 +134,7 @@ TriMeshFile ReadTriMesh(const std::filesystem::path& file) {
   TriMeshFile result;
   result.notes = soup.notes;
   const Eigen::Matrix3Xd vertices = FiniteVertices(file, soup);
-  const Eigen::Matrix3Xi triangles = TrianglesOf(file, soup, result.notes);
+  const Eigen::Matrix3Xi triangles = TrianglesOf(file, soup, &result.notes);
   MendedSurface mended = MendSurface({vertices, triangles}, LowerExtension(file) == ".stl");
   if (mended.mesh.triangles.cols() == 0)
     throw InputError(
@@ -154,10 +154,10 @@ void WriteTriMesh(const std::filesystem::path& ply, const TriMesh& mesh) {
       "property double y\nproperty double z\nelement face {}\n"
       "property list uchar int vertex_indices\nend_header\n",
       mesh.vertices.cols(), mesh.triangles.cols());
-  for (const double coordinate : mesh.vertices.reshaped()) AppendBytes(coordinate, content);
+  for (const double coordinate : mesh.vertices.reshaped()) AppendBytes(coordinate, &content);
   for (const auto triangle : mesh.triangles.colwise()) {
-    AppendBytes(static_cast<unsigned char>(3), content);
-    for (const int v : triangle) AppendBytes(static_cast<int32_t>(v), content);
+    AppendBytes(static_cast<unsigned char>(3), &content);
+    for (const int v : triangle) AppendBytes(static_cast<int32_t>(v), &content);
   }
   WriteFileAtomically(ply, content);
 }

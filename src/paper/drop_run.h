@@ -24,7 +24,7 @@ struct DropRun {
   DropMesh mesh;
   DropMotion motion;  // at the scene's steps
   DropNumbers numbers;
-  DropNumbers halved;  // the same with steps of half the length
+  DropNumbers halved;  // `numbers` with steps of half the length
 };
 
 // Runs all meshes one after the other. Each of the simulations is a stage of the run folder

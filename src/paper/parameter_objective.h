@@ -63,7 +63,7 @@ struct ObjectiveEvaluation {
   // The mean length of the residual over the frames and a fixed sampling of the surface, m. With
   // registration in the loop, D is interpolated linearly between the vertices.
   double residual_per_point = kNotMeasured;
-  double residual_rms = kNotMeasured;   // the rms of the same lengths, m
+  double residual_rms = kNotMeasured;   // rms of these residuals, m
   double scan_distance = kNotMeasured;  // mean distance of scan points, m, without correspondences
   double force = kNotMeasured;          // mean length of the net force over the frames, N
   int nodes = 0, tets = 0, surface_points = 0;

@@ -52,8 +52,8 @@ struct ParameterSearchResult {
   SearchStatus status = SearchStatus::kNotRun;
   std::string message;
   std::string trace_hash;                        // equal for equal searches
-  std::vector<SearchedParameters> parameters;    // parameters of each evaluation, in order
-  std::vector<ObjectiveEvaluation> evaluations;  // likewise
+  std::vector<SearchedParameters> parameters;    // one per evaluation, in order
+  std::vector<ObjectiveEvaluation> evaluations;  // their results
   int best = -1;                                 // index of the least value; -1: all failed
   int failures = 0;
 

@@ -43,7 +43,7 @@ std::string RecordingKey(const Table1Study& study, int seed);
 // Reads all .yaml files in `folder`. Throws InputError for a file that cannot be used, and when two
 // files name different scenes.
 Table1Study ReadTable1(const std::filesystem::path& folder);
-// The same for files that are loaded already, in this order; `row` may be absent.
+// ReadTable1() for files that are loaded already, in this order; `row` may be absent.
 Table1Study ReadTable1(const std::vector<Config>& files);
 
 struct Table1Options {
@@ -63,7 +63,7 @@ struct Table1Options {
 struct Table1Search {
   ParameterSearchResult found;
   int worst = -1;  // index of the largest value
-  // Both ends again with CPD in the loop; first seed only.
+  // Both ends evaluated again with CPD in the loop; first seed only.
   ObjectiveEvaluation worst_in_loop, best_in_loop;
   ObjectiveEvaluation at_truth;  // at the q and v of the file and the true y and p
 };

@@ -26,7 +26,7 @@ struct FigureContent {
 FigureContent DrawCloudAndSurface(const Table1Scans& scans, const Table1FigureSettings& settings);
 FigureContent DrawMeshes(const Table1Study& table1, const Table1Scans& scans,
                          const Table1FigureSettings& settings);
-// The same where S_0's own triangles are kept and v does not act, so that q does.
+// DrawMeshes() where S_0's own triangles are kept and v does not act, so that q does.
 FigureContent DrawOwnSurfaceMeshes(const Table1Study& table1, const Table1Scans& scans,
                                    const Table1FigureSettings& settings);
 // Throws InputError where the registration of one of its frames failed.

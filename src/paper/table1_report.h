@@ -24,7 +24,7 @@ struct Table1Row {
   int seeds = 0;
   SeedRange drop_from_max;    // 1 − best / largest value of the searched measure, as in the paper
   SeedRange drop_from_start;  // 1 − best / start
-  SeedRange sum_drop;         // the same as the first for the paper's sum |D_anim|
+  SeedRange sum_drop;         // drop_from_max of the paper's sum |D_anim|
   SeedRange best, young_modulus, poisson_ratio;  // m per point, Pa, 1
   // 1 − best / value at the true parameters; positive where the search finds less than the truth
   // has.

@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/random_bits.h"
 #include "diagnosis/projected_hypotheses.h"
-#include "scan/random_bits.h"
 
 namespace lacuna {
 namespace {

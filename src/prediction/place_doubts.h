@@ -29,8 +29,8 @@ struct ExpectedPlaces {
 std::string DoubtOfPlaces(const Eigen::Matrix3Xd& places, const Eigen::Matrix3Xd& measured,
                           const std::vector<std::string>& names, const ExpectedPlaces& expected);
 
-// The same for the first frame that is used of a recording of markers; empty for scans and for
-// tracked points, whose places are those of that frame.
+// DoubtOfPlaces() in the first frame that is used of a recording of markers; empty for scans and
+// for tracked points, whose places are those of that frame.
 std::string DoubtOfPlaces(const PredictionStudy& study, const PredictedRecording& item);
 
 // A sentence about tracked points that follow the steps of a grip's given path from frame to frame

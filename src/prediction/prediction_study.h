@@ -95,7 +95,7 @@ std::vector<ModelParameter> ModelParameters(const EffectList& effects);
 const Effect& EffectOf(const ModelParameter& parameter, const EffectList& effects);
 // Whether a parameter is the density of the body, which the experiment states beside the effects.
 bool IsDensity(const ModelParameter& parameter, const EffectList& effects);
-// The same effects with these values of the parameters (SI, in the order of `parameters`; further
+// The effects with these values of the parameters (SI, in the order of `parameters`; further
 // entries are not read).
 EffectList WithValues(const EffectList& effects, const std::vector<ModelParameter>& parameters,
                       const Eigen::VectorXd& values);

@@ -1,19 +1,10 @@
 // The prediction of a recording by its model.
+#include "prediction/compared_frame.h"
 #include "prediction/reading_times.h"
 #include "prediction/recording_model.h"
 
 namespace lacuna {
 namespace {
-
-using Kind = MisfitDirection::Kind;
-
-// Rotates the vectors that are stacked in the columns of `stacked`.
-template <typename Stacked>
-void Turn(const Eigen::Matrix3d& turn, Stacked* stacked) {
-  if (stacked->size() == 0) return;
-  const Eigen::Matrix3Xd turned = turn * stacked->reshaped(3, stacked->size() / 3);
-  *stacked = turned.reshaped(stacked->rows(), stacked->cols());
-}
 
 // Gives the misfit of a reading the rows of exactly `frames` frames. Where a prediction stops
 // early, a load cell with a delay may have reached more or fewer of them; the latter count as not
@@ -28,73 +19,6 @@ void Truncate(size_t frames, const MeasuredReaction& reading, ReactionMisfit* mi
   if (rows <= before) return;
   misfit->residual.tail(rows - before).setZero();
   misfit->jacobian.bottomRows(rows - before).setZero();
-}
-
-// The motion of the nodes in one frame (3n, node-major), in the recording's coordinates.
-struct NodalMotion {
-  Eigen::VectorXd position, velocity;
-  Eigen::MatrixXd jacobian;  // ∂position/∂(simulated direction)
-  bool moves = false;        // false up to the start, before which a delay changes nothing
-
-  void Register(const Eigen::Isometry3d& registration) {
-    Turn(registration.linear(), &position);
-    position += registration.translation().replicate(position.size() / 3, 1);
-    Turn(registration.linear(), &velocity);
-    Turn(registration.linear(), &jacobian);
-  }
-};
-
-// The derivative of the nodes' positions by the clock, a load cell's delay or the registration,
-// which follows from their motion without a tangent.
-Eigen::VectorXd DerivativeWithoutSimulation(const RecordingModel& model,
-                                            const MisfitDirection& direction,
-                                            const Eigen::Isometry3d& registration,
-                                            const NodalMotion& nodal) {
-  if (direction.kind == Kind::kClock) return (nodal.moves ? -1.0 : 0.0) * nodal.velocity;
-  if (direction.kind == Kind::kCellDelay) return Eigen::VectorXd::Zero(nodal.position.size());
-  Eigen::Matrix3Xd rigid(3, nodal.position.size() / 3);
-  for (Eigen::Index a = 0; a < rigid.cols(); ++a)
-    rigid.col(a) = model.ByRegistration(direction, registration, nodal.position.segment<3>(3 * a));
-  return rigid.reshaped();
-}
-
-// A misfit without frames, and with space for this number of them.
-Misfit EmptyMisfit(const RecordingModel& model, size_t frames, size_t directions) {
-  Misfit misfit;
-  misfit.points = model.PointCount();
-  misfit.reactions.resize(model.Reactions().size());
-  misfit.residual.resize(model.observer().Components() * misfit.points *
-                         static_cast<Eigen::Index>(frames));
-  misfit.jacobian.setZero(misfit.residual.size(), static_cast<Eigen::Index>(directions));
-  return misfit;
-}
-
-// Writes the next frame of a misfit, the nodes of which are compared with `seen`.
-void AppendFrame(const RecordingModel& model, const std::vector<MisfitDirection>& directions,
-                 const Eigen::Isometry3d& registration, int frame, const NodalMotion& nodal,
-                 Observed seen, Misfit* misfit) {
-  const Eigen::Index components = model.observer().Components();
-  const Eigen::Index rows = components * misfit->points;
-  const Eigen::Index begin = rows * static_cast<Eigen::Index>(misfit->frames.size());
-  misfit->residual.segment(begin, rows) = *seen.rows * nodal.position - seen.target;
-  Eigen::Index simulated = 0;
-  for (size_t k = 0; k < directions.size(); ++k) {
-    auto column = misfit->jacobian.col(static_cast<Eigen::Index>(k)).segment(begin, rows);
-    if (directions[k].IsSimulated())
-      column = *seen.rows * nodal.jacobian.col(simulated++);
-    else
-      column = *seen.rows * DerivativeWithoutSimulation(model, directions[k], registration, nodal);
-  }
-  for (int point = 0; point < misfit->points; ++point) {
-    misfit->count.push_back(seen.count[point]);
-    if (seen.count[point] > 0) continue;
-    misfit->residual.segment(begin + components * point, components).setZero();
-    misfit->jacobian.middleRows(begin + components * point, components).setZero();
-  }
-  for (const Eigen::Matrix3d& F : seen.deformation)
-    misfit->deformation.emplace_back(registration.linear() * F);
-  misfit->frames.push_back(frame);
-  misfit->observed.push_back(std::move(seen));
 }
 
 // The times, s, on the model's clock, at which frames that are stamped `frame_times` are seen and

@@ -15,7 +15,8 @@ constexpr double kNuisanceHorizon = 0.1;
 constexpr int kRounds = 3;
 
 // Appends the whitened rows of the load cells.
-void AppendReadings(const RecordingModel& model, const Misfit& misfit, Prediction* prediction) {
+void AppendReadings(const RecordingModel& model, const Misfit& misfit,
+                    ResidualEvaluation* prediction) {
   for (size_t k = 0; k < misfit.reactions.size(); ++k) {
     const ReactionMisfit& reaction = misfit.reactions[k];
     const auto whitened = [&](const Eigen::MatrixXd& rows) {
@@ -59,7 +60,7 @@ Eigen::VectorXd FitRecordingNuisances(const RecordingModel& model, MeasurementEr
           model.Predict(beginning, at, with_jacobian ? directions : std::vector<MisfitDirection>{},
                         {kept.empty() ? nullptr : &kept, &equilibrium});
       if (misfit.summary.held.size() > 0) equilibrium = misfit.summary.held;
-      Prediction prediction{misfit.summary.IsUsable(), misfit.summary.message, {}, {}};
+      ResidualEvaluation prediction{misfit.summary.IsUsable(), misfit.summary.message, {}, {}};
       if (!prediction.usable) return prediction;
       const auto whitened = [&](const Eigen::MatrixXd& rows) {
         return Whitened(rows, misfit.count, misfit.points, errors, misfit.deformation);

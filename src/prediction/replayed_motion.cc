@@ -1,12 +1,13 @@
 #include "prediction/replayed_motion.h"
 
-#include <glog/logging.h>
-
 #include <algorithm>
+#include <vector>
 
 #include "effects/gravity.h"
 #include "fem/effect_memory.h"
 #include "fem/element_strain.h"
+#include "geometry/embedding.h"
+#include "prediction/compared_frame.h"
 
 namespace lacuna {
 namespace {
@@ -18,28 +19,67 @@ void FindUp(const Model& model, ReplayedMotion* motion) {
   motion->up_from_gravity = true;
 }
 
-// Stores the motion and deformation of the markers in one frame. Frames must be stored in order.
-void StoreMarkers(const RecordingModel& recording, const PredictedState& state, int frame,
-                  ReplayedMotion* motion) {
-  const MarkerObserver& observer = *recording.Markers();
-  const Embedding& places = observer.places_in_mesh();
-  const Eigen::Index markers = recording.PointCount();
-  const auto vectors = [&](const Eigen::VectorXd& nodal) {
-    const Eigen::VectorXd stacked = observer.rows() * nodal;
-    return Eigen::Matrix3Xd(stacked.reshaped(3, markers));
-  };
-  motion->predicted.col(frame) = (motion->registration * vectors(state.position)).reshaped();
+// The points of a recording as material points of its model.
+class EmbeddedPoints {
+ public:
+  // The recording's model must outlive this.
+  explicit EmbeddedPoints(const RecordingModel& recording)
+      : recording_(recording),
+        places_(recording.Markers() != nullptr ? recording.Markers()->places_in_mesh()
+                                               : Embed(Mesh(), recording.observer().Places())) {}
+
+  // The element that contains a point.
+  int ElementOf(Eigen::Index point) const { return places_.tet[point]; }
+  // The positions or velocities of the points for those of the nodes (3n).
+  Eigen::Matrix3Xd VectorsAt(const Eigen::VectorXd& nodal) const {
+    if (recording_.Markers() == nullptr)
+      return PointsAt(places_, Mesh(), nodal.reshaped(3, Mesh().NodeCount()));
+    const Eigen::VectorXd stacked = recording_.Markers()->rows() * nodal;
+    return stacked.reshaped(3, recording_.PointCount());
+  }
+
+ private:
+  const TetMesh& Mesh() const { return recording_.model().body->mesh; }
+
+  const RecordingModel& recording_;
+  Embedding places_;
+};
+
+// Stores the motion of the points in one frame. Frames must be stored in order.
+void StorePoints(const RecordingModel& recording, const EmbeddedPoints& points,
+                 const PredictedState& state, int frame, ReplayedMotion* motion) {
+  motion->predicted.col(frame) =
+      (motion->registration * points.VectorsAt(state.position)).reshaped();
   motion->velocity.col(frame) =
-      (motion->registration.linear() * vectors(state.velocity)).reshaped();
-  for (const Eigen::Matrix3d& deformation : observer.DeformationAt(state.position))
-    motion->deformation.emplace_back(motion->registration.linear() * deformation);
+      (motion->registration.linear() * points.VectorsAt(state.velocity)).reshaped();
+  if (recording.Markers() != nullptr)
+    for (const Eigen::Matrix3d& deformation : recording.Markers()->DeformationAt(state.position))
+      motion->deformation.emplace_back(motion->registration.linear() * deformation);
   const Body& body = *recording.model().body;
-  for (Eigen::Index m = 0; m < markers; ++m) {
-    const ElementStrain strain = MeanStrain(body, places.tet[m], state.position, state.velocity);
+  for (Eigen::Index m = 0; m < recording.PointCount(); ++m) {
+    const ElementStrain strain =
+        MeanStrain(body, points.ElementOf(m), state.position, state.velocity);
     motion->strain(m, frame) = LargestPrincipal(strain.strain);
     motion->strain_rate(m, frame) = LargestPrincipal(strain.rate);
     motion->height(m, frame) = motion->up.dot(motion->predicted.col(frame).segment<3>(3 * m));
   }
+}
+
+// Compares one frame with its scan. Frames must be compared in order.
+void CompareScan(const RecordingModel& recording, const PredictedState& state, int frame,
+                 bool moves, ReplayedMotion* motion) {
+  std::vector<MisfitDirection> directions;
+  for (const RecordingModel::Nuisance& nuisance : recording.nuisances())
+    directions.push_back(nuisance.direction);
+  const Eigen::Index simulated =
+      std::count_if(directions.begin(), directions.end(),
+                    [](const MisfitDirection& direction) { return direction.IsSimulated(); });
+  NodalMotion nodal{state.position, state.velocity,
+                    Eigen::MatrixXd::Zero(state.position.size(), simulated), moves};
+  nodal.Register(motion->registration);
+  const int number = recording.recording().frames[static_cast<size_t>(frame)];
+  AppendFrame(recording, directions, motion->registration, number, nodal,
+              recording.observer().Observe(number, nodal.position), &motion->misfit);
 }
 
 }  // namespace
@@ -50,7 +90,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   const Model& model = recording.model();
   Model loaded = recording.PlacedModel(nuisance);
   loaded.effects.insert(loaded.effects.end(), further.begin(), further.end());
-  CHECK(!recording.recording().ShowsScans()) << "only markers are replayed";
+  const bool shows_scans = recording.recording().ShowsScans();
   const std::vector<int>& frames = recording.recording().frames;
   const PredictionOptions options = recording.Options(nuisance);
   motion.nuisance = nuisance;
@@ -66,13 +106,16 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   const int at_start = static_cast<int>(start - times.begin());
   times.insert(start, options.start_time);
 
-  const Eigen::Index markers = recording.PointCount();
+  const Eigen::Index points = recording.PointCount();
   const Eigen::Index count = static_cast<Eigen::Index>(frames.size());
-  motion.predicted.resize(3 * markers, count);
-  motion.velocity.resize(3 * markers, count);
-  motion.strain.resize(markers, count);
-  motion.strain_rate.resize(markers, count);
-  motion.height.resize(markers, count);
+  motion.predicted.resize(3 * points, count);
+  motion.velocity.resize(3 * points, count);
+  motion.strain.resize(points, count);
+  motion.strain_rate.resize(points, count);
+  motion.height.resize(points, count);
+  if (shows_scans)
+    motion.misfit = EmptyMisfit(recording, frames.size(), recording.nuisances().size());
+  const EmbeddedPoints points_in_mesh(recording);
   const int last = static_cast<int>(count) - 1;
   const int stride = std::max(1, (last - at_start) / (ReplayedMotion::kMostStates - 2) + 1);
   EffectMemory memory(model, options.step.scheme);
@@ -87,7 +130,8 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
       return;
     }
     const int frame = index < at_start ? index : index - 1;
-    StoreMarkers(recording, state, frame, &motion);
+    StorePoints(recording, points_in_mesh, state, frame, &motion);
+    if (shows_scans) CompareScan(recording, state, frame, state.time > options.start_time, &motion);
     if (index < at_start) return;
     const auto& effect_state =
         memory.Advance(state.position, state.velocity, state.time, state.time - time_before);

@@ -74,10 +74,10 @@ BodyRegistration::BodyRegistration(const ReconstructionStudy& study, const Body&
   if (places.cols() == 0) return;
   const std::vector<Eigen::Index> known = FiniteColumns(places);
   if (!are_identified_) {
-    tracks_ = TrackOnSurface(body.boundary, places(Eigen::all, known));
+    places_ = Embed(body.mesh, places(Eigen::all, known));
     return;
   }
-  tracks_ = TrackOnSurface(body.boundary, places);
+  places_ = Embed(body.mesh, places);
   if (const Eigen::Index unknown = places.cols() - std::ssize(known); unknown > 0)
     warnings_.push_back(fmt::format(
         "{} of {} tracked points are used in no frame, because it is not known where they are on "
@@ -93,7 +93,7 @@ Eigen::Matrix3Xd BodyRegistration::Shift(size_t k, const Eigen::Matrix3Xd& nodes
   }
   if (are_identified_) {
     const Eigen::Matrix3Xd from =
-        k > 0 ? states_[k - 1].tracked : PointsAt(tracks_, body_.boundary, nodes);
+        k > 0 ? states_[k - 1].tracked : PointsAt(places_, body_.mesh, nodes);
     return InterpolatedMotion(from, states_[k].tracked, nodes);
   }
   const PointCloud from = k > 0 ? StatePoints(states_[k - 1]) : SimulatedSurface(nodes);
@@ -117,10 +117,9 @@ BodyRegistration::Correspondence BodyRegistration::Register(size_t k,
 Observations BodyRegistration::Observe(size_t k, const Eigen::Matrix3Xd& nodes,
                                        const Correspondence& correspondence, double noise) const {
   const BoundarySurface& boundary = body_.boundary;
-  if (are_identified_)
-    return ObserveMarkers(boundary, tracks_.at_rest, states_[k].tracked - tracks_.offset, noise);
-  if (tracks_.Count() > 0)
-    return ObserveMarkers(boundary, tracks_.at_rest, correspondence.target - tracks_.offset, noise);
+  if (are_identified_) return ObserveMarkers(body_.mesh, places_, states_[k].tracked, noise);
+  if (places_.tet.size() > 0)
+    return ObserveMarkers(body_.mesh, places_, correspondence.target, noise);
   const double size = BoundingBoxDiagonal(body_.mesh.nodes);
   // Tangential to the surface only CPD contains information. Along its normal the scanned points
   // are more accurate where there are any, so that CPD gets a larger standard deviation there.
@@ -140,7 +139,7 @@ BodyRegistration::Residual BodyRegistration::Measure(size_t k,
   const BoundarySurface& boundary = body_.boundary;
   Residual residual;
   if (are_identified_) {
-    residual.displacement = states_[k].tracked - PointsAt(tracks_, boundary, nodes);
+    residual.displacement = states_[k].tracked - PointsAt(places_, body_.mesh, nodes);
     if (residual.displacement.array().isNaN().colwise().any().all())
       residual.problem = "none of the tracked points is seen";
     return residual;
@@ -175,8 +174,8 @@ PointCloud BodyRegistration::SimulatedSurface(const Eigen::Matrix3Xd& nodes) con
 // The points that represent the model in a registration: the places of the tracked points, which
 // exclude sides that are never seen, or its whole surface.
 PointCloud BodyRegistration::RegistrationPoints(const Eigen::Matrix3Xd& nodes) const {
-  if (tracks_.Count() == 0) return SimulatedSurface(nodes);
-  return {PointsAt(tracks_, body_.boundary, nodes), {}};
+  if (places_.tet.size() == 0) return SimulatedSurface(nodes);
+  return {PointsAt(places_, body_.mesh, nodes), {}};
 }
 
 // Registers a cloud to state k. A result that has not converged is used with a warning. One that

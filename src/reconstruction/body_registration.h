@@ -10,7 +10,7 @@
 #include "experiment/frame_states.h"
 #include "fem/body.h"
 #include "fit/observations.h"
-#include "geometry/surface_tracks.h"
+#include "geometry/embedding.h"
 #include "reconstruction/reconstruction_study.h"
 #include "reconstruction/tracked_frames.h"
 #include "registration/surface_alignment.h"
@@ -18,9 +18,9 @@
 namespace lacuna {
 
 // Node positions are 3 × nodes of the body, m. Tracked points that identify themselves
-// (HasIdentifiedPoints) are where they were seen, and are attached to the body at their places on
-// it (FindPlacesAtRest) by an offset from its surface that does not rotate; a warning says how many
-// have none. Other points are found by CPD, whose failures become warnings that name the frame.
+// (HasIdentifiedPoints) are where they were seen, and are embedded in the body at their places on
+// it (FindPlacesAtRest), as in a fit; a warning says how many have none. Other points are found by
+// CPD, whose failures become warnings that name the frame.
 class BodyRegistration {
  public:
   // The places of points of the body in a state, found by CPD. Where it failed, they are NaN and
@@ -43,7 +43,7 @@ class BodyRegistration {
 
   // The number of points of which a residual consists.
   Eigen::Index Count() const {
-    return are_identified_ ? tracks_.Count() : body_.boundary.node.size();
+    return are_identified_ ? places_.tet.size() : body_.boundary.node.size();
   }
 
   // The displacements of `nodes` from state k − 1 to state k (the paper's displacement field
@@ -74,9 +74,9 @@ class BodyRegistration {
   const TrackedFrames* tracked_;
   std::vector<std::string>& warnings_;
   const bool are_identified_;
-  // All tracked points, or those with known places where they do not identify themselves; empty for
-  // scans.
-  SurfaceTracks tracks_;
+  // The places on the body of all tracked points, or of those with known places where they do not
+  // identify themselves; empty for scans.
+  Embedding places_;
   DisplacementField last_motion_;
 };
 

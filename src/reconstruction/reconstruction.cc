@@ -20,7 +20,7 @@ namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
 constexpr int kStatesVersion = 5;
-constexpr int kMotionVersion = 7;
+constexpr int kMotionVersion = 8;
 constexpr int kResultsVersion = 6;
 
 InputFiles InputsOf(const ReconstructionStudy& study) {

@@ -16,7 +16,6 @@
 #include "geometry/embedding.h"
 #include "geometry/finite_columns.h"
 #include "geometry/nearest.h"
-#include "geometry/surface_tracks.h"
 #include "reconstruction/known_answers.h"
 #include "reconstruction/recorded_states.h"
 #include "reconstruction/residual_at_vertices.h"
@@ -45,13 +44,13 @@ void MeasureHeldOut(const ReconstructionStudy& study, const std::vector<FrameSta
                     const FollowedMotion& motion, RunRecord* record) {
   const PlacesAtRest rest = FindPlacesAtRest(study, states);
   if (rest.held_out.cols() == 0) return;
-  const SurfaceTracks tracks = TrackOnSurface(motion.body->boundary, rest.held_out);
+  const Embedding places = Embed(motion.body->mesh, rest.held_out);
   double worst = 0;
-  std::vector<char> compared(static_cast<size_t>(tracks.Count()), 0);
+  std::vector<char> compared(static_cast<size_t>(rest.held_out.cols()), 0);
   for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
     if (!motion.frames[k].solver.usable) continue;
     const Eigen::VectorXd errors =
-        (PointsAt(tracks, motion.body->boundary, motion.frames[k].position) - states[k].held_out)
+        (PointsAt(places, motion.body->mesh, motion.frames[k].position) - states[k].held_out)
             .colwise()
             .norm()
             .transpose();

@@ -13,7 +13,7 @@
 
 #include "core/config.h"
 #include "experiment/model_reader.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "fit/force_fit.h"
 #include "reconstruction/known_answers.h"
 #include "registration/coherent_point_drift.h"

@@ -23,7 +23,7 @@ struct ParameterOfRecordings {
   // The probability of a difference at least as large by chance if this parameter is the only one
   // that may differ; 1 where the recordings do not determine the difference.
   double p_value = 1;
-  // Of three recordings and more: the one that alone differs most; otherwise empty.
+  // The recording that alone differs most; empty for fewer than three recordings.
   std::string odd_recording;
 };
 

@@ -99,8 +99,8 @@ struct CalibrationRecord {
   double start_rms = 0, rms = 0;            // whitened residuals, before and after the fit
   int predictions = 0;                      // number of simulations of all recordings
   std::vector<FittedParameter> parameters;  // model's, then the recordings'
-  // Those of the model that are not fitted and are no settings: the density, then those of the
-  // elasticity law and of the effects.
+  // The parameters of the model that are not fitted and are no settings: the density, then those of
+  // the elasticity law and of the effects.
   std::vector<HeldParameter> held;
   std::vector<FittedRecording> recordings;
   std::vector<PriorConflict> prior_conflicts;

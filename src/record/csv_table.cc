@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
-#include <charconv>
 #include <fstream>
 #include <set>
 #include <string_view>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/parsed_word.h"
 
 namespace lacuna {
 namespace {
@@ -65,14 +65,12 @@ CsvTable LoadCsv(const std::filesystem::path& file) {
                                                             fields.size(), table.size()));
     }
     for (size_t k = 0; k < fields.size(); ++k) {
-      double value = 0;
-      const char* end = fields[k].data() + fields[k].size();
-      const auto parsed = std::from_chars(fields[k].data(), end, value);
-      if (parsed.ec != std::errc() || parsed.ptr != end) {
+      const auto value = ParseWord<double>(fields[k]);
+      if (!value) {
         throw InputError({file.string(), number},
                          fmt::format("{}: got '{}'; expected a number", table[k].name, fields[k]));
       }
-      columns[k].push_back(value);
+      columns[k].push_back(*value);
     }
   }
   for (size_t k = 0; k < table.size(); ++k) {

@@ -28,8 +28,8 @@ CsvTable LoadCsv(const std::filesystem::path& file);
 // The values of the column with this name; nullptr if there is none.
 const Eigen::VectorXd* FindColumn(const CsvTable& table, const std::string& name);
 
-// The same for a column that must be there. Throws InputError, which names the table's `file`, if
-// there is none.
+// FindColumn() for a column that must be there. Throws InputError, which names the table's `file`,
+// if there is none.
 const Eigen::VectorXd& ColumnOf(const CsvTable& table, const std::string& name,
                                 const std::filesystem::path& file);
 

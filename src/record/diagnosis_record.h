@@ -121,11 +121,11 @@ struct DiagnosisRecord : Conclusion {
   RecordedAlternatives alternatives;
 };
 
-// Of a verdict "not in library": the effect with which the hypotheses that contain it reach
-// kStatedProbability together, and that explains more than half of the squared misfit in excess of
-// the noise. The model comes closer to the measurements with it, although something is missing that
-// the catalogue does not have, and for which it may stand in. Empty for other verdicts, and where
-// there is no such effect.
+// The effect that explains a part of the misfit under the verdict "not in library": the one with
+// which the hypotheses that contain it reach kStatedProbability together, and that explains more
+// than half of the squared misfit in excess of the noise. The model comes closer to the
+// measurements with it, although something is missing that the catalogue does not have, and for
+// which it may stand in. Empty for other verdicts, and where there is no such effect.
 std::optional<std::string> PartlyExplainedBy(const DiagnosisRecord& diagnosis);
 
 // Whether the diagnosis in this folder, <run>/diagnosis, belongs to the fit whose calibration.json

@@ -63,45 +63,46 @@ struct ParameterCard {
 // `length` the extent of a gradient. All other parameters take the model's value (those of the
 // material, and gravity) or the default of the card.
 
-// One variant, without enumeration.
+// Tried as one variant, without enumeration.
 struct TriedOnce {};
 
-// At places of the body: along the length of a bar, or spread over the volume of any other body.
+// Tried at places of the body: along the length of a bar, or spread over the volume of any other
+// body.
 struct TriedAtPlaces {
   std::vector<double> length_shares;  // for a bar: distance from one end over its length
   double radius_share = 0;            // width of each place over the length of the body
 };
 
-// Along the principal axes of the body and the diagonals between them (13 directions).
+// Tried along the principal axes of the body and the diagonals between them (13 directions).
 struct TriedAlongDirections {};
 
-// As a gradient along the length of a bar, or along the two longest axes of any other body.
+// Tried as a gradient along the length of a bar, or along the two longest axes of any other body.
 struct TriedAsGradients {};
 
-// At values of one parameter.
+// Tried at values of one parameter.
 struct TriedAtValues {
   std::string parameter;       // its name on the card
   std::string label;           // names the variant: "κ₀" gives "κ₀ = 0.1"
   std::vector<double> values;  // SI, in ascending order
 };
 
-// At values of a relaxation time, by a factor of four from the time step of the simulation to the
-// duration of the recordings.
+// Tried at values of a relaxation time, by a factor of four from the time step of the simulation to
+// the duration of the recordings.
 struct TriedAtRelaxationTimes {
   std::string parameter;  // its name on the card
   std::string label;      // names the variant: "τ" gives "τ = 0.3 s"
 };
 
-// On the whole surface, and around the girth near both ends and at the middle of the length; on
-// each side of the body that is not gripped, the whole of it and places along the long sides. A
+// Tried on the whole surface, and around the girth near both ends and at the middle of the length;
+// on each side of the body that is not gripped, the whole of it and places along the long sides. A
 // support that slips is tried on the whole surface, around the girth and on each whole side, each
 // of these at several slip distances.
 struct TriedAsSupports {
   std::vector<double> slip_shares;  // values of `slip_distance` over the length of the body
 };
 
-// At planes that the predicted body crosses and the measured one does not. Such a contact has no
-// derivative at its null value, so it is tried by a simulation of its own.
+// Tried at planes that the predicted body crosses and the measured one does not. Such a contact has
+// no derivative at its null value, so it is tried by a simulation of its own.
 struct TriedAtContactPlanes {};
 
 using TriedAt =

@@ -36,7 +36,8 @@ struct LedgerModel {
   CalibrationRecord record;   // usable or not
   ModelErrors errors;         // over all recordings; 0 if the fit is not usable
   double gain = 0;            // relative reduction of the parent's held-out error (in σ)
-  // The same with the points at the places where they were measured (in m).
+  // Relative reduction of the parent's held-out error with the points at the places where they were
+  // measured (in m).
   double gain_at_measured_places = 0;
   std::vector<ParameterMove> moves;  // changes from the parent
   bool may_be_zero = false;          // as SizeMayBeZero says of the added effect

@@ -26,11 +26,12 @@ struct MisfitMeasure {
 struct ModelErrors {
   double in_fit_rms = 0, held_out_rms = 0;  // m, fitted and held-out frames
   double rms_over_sigma = 0;                // held-out frames, components divided by σ
-  // The same for the held-out frames of the fitted recordings only, after the adopted nuisances
-  // (mesh, time step, grip placement) have taken their best values.
+  // rms_over_sigma of the held-out frames of the fitted recordings only, after the adopted
+  // nuisances (mesh, time step, grip placement) have taken their best values.
   double without_nuisances = 0;
   double unfitted_rms_over_sigma = 0;  // recordings that were not fitted; 0 if there are none
-  // m, as held_out_rms, with the points at the places where they were measured. Of fits only.
+  // m, as held_out_rms, with the points at the places where they were measured. Known for fits
+  // only.
   double held_out_at_measured_places = 0;
   bool has_held_out = false;  // if nothing was held out, the fitted frames are used
   // The sum of the squares of the residuals of the recordings that were not fitted, each divided by

@@ -18,7 +18,7 @@ namespace lacuna {
 // that do not match the shape, are programming errors (CHECK).
 nlohmann::json PackFrames(const Eigen::MatrixXd& frames, const std::vector<int>& of_frame);
 
-// The same as single-precision numbers, without differences.
+// The series of PackFrames() as single-precision numbers, without differences.
 nlohmann::json PackFloats(const Eigen::MatrixXd& frames, const std::vector<int>& of_frame);
 
 // The vertices of triangles, of the shape {T, 3}. A negative number is a programming error (CHECK).

@@ -22,8 +22,9 @@ struct ParameterEstimate {
   // priors together. Infinite where the data do not determine the parameter.
   double deviation = std::numeric_limits<double>::infinity();
   double posterior_deviation = std::numeric_limits<double>::infinity();
-  // 95 % interval of θ, SI. It includes the prior and, after CountModelErrors (fit/calibration.h),
-  // known errors of the model, for which it may have another centre than `value`.
+  // 95 % interval of θ, SI. It includes the prior and, after WidenIntervalByModelErrors
+  // (fit/calibration.h), known errors of the model, for which it may have another centre than
+  // `value`.
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   Determination determination = Determination::kPinnedDown;

@@ -1,4 +1,4 @@
-// Summary of the body force that would have made a fitted model follow its markers, as it is stored
+// Summary of the body force that would have made a fitted model follow a recording, as it is stored
 // in comparison.json. It is estimated by comparison/force_estimate.h.
 //
 // Vectors are x, y, z in the model's frame. Every ± value is one standard deviation.

@@ -29,7 +29,7 @@ struct Drift {
 
 struct Level {
   int source_stride = 1;  // every how many points of the source are used
-  int target_stride = 1;  // the same for the target
+  int target_stride = 1;  // every how many points of the target are used
   double floor = 0.0;     // lower bound of σ
   bool is_last = true;
 };

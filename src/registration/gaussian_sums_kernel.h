@@ -35,7 +35,7 @@ inline Floats PowerOfTwo(Floats t) {
   return power * reinterpret_cast<Floats>((whole + 127) << 23);
 }
 
-// The same with relative error 2e-7, for values that enter a linear system.
+// 2^t for t ≤ 0 with relative error 2e-7, for values that enter a linear system.
 inline Floats AccuratePowerOfTwo(Floats t) {
   t = t < -126.f ? Floats{} - 126.f : t;
   const Ints whole = __builtin_convertvector(t - 0.5f, Ints);

@@ -21,7 +21,7 @@ struct NormalisedClouds {
   Eigen::Matrix3Xd source_normals;                   // 3 × M, 0 where unknown
   Eigen::Matrix3Xd target;                           // 3 × N
   std::vector<int> source_order;  // M: the index of each source point in the caller's cloud
-  std::vector<int> target_order;  // N: the same for the target
+  std::vector<int> target_order;  // N: the index of each target point in the caller's cloud
   double source_spacing = 0.0;    // distance between neighbours in the source
 };
 

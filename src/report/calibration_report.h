@@ -12,8 +12,8 @@ namespace lacuna {
 // terminal of 100 columns.
 std::string CalibrationReport(const CalibrationRecord& record);
 
-// The same in about a dozen lines: the parameters of the model and the errors, without nuisance
-// parameters of the recordings, which are counted, as are conflicts with priors.
+// CalibrationReport() in about a dozen lines: the parameters of the model and the errors, without
+// nuisance parameters of the recordings, which are counted, as are conflicts with priors.
 std::string CalibrationSummary(const CalibrationRecord& record);
 
 // One sentence about a conflict between the fit and a prior.

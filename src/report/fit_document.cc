@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,13 @@ json WithoutPairs(json comparison) {
   return comparison;
 }
 
+// Whether points have noise of their own, so that no single number holds for all errors.
+bool ShowsOwnNoise(const json& model) {
+  const json& scenes = model.at("scenes");
+  return std::any_of(scenes.begin(), scenes.end(),
+                     [](const json& scene) { return scene.at("points").contains("sigmas"); });
+}
+
 json ModelDocument(const std::vector<ReportedModel>& models, size_t index) {
   const ReportedModel& model = models[index];
   const auto file = [&](bool exists, const char* name) {
@@ -103,7 +111,8 @@ GatheredRun GatherFit(const fs::path& folder) {
   document["name"] = opened.name;
   document["models"] = models;
   document["ledger"] = run.ledger;
-  if (noise) document["noise"] = *noise;
+  if (noise && std::none_of(models.begin(), models.end(), ShowsOwnNoise))
+    document["noise"] = *noise;
   document["notes"] = run.notes;
   document["provenance"] = Provenance(manifest, FitCommands(run, folder));
   return gathered;

@@ -11,7 +11,7 @@ namespace lacuna {
 // What has to be decided, and the best recording in words; for 100 columns.
 std::string PlanSummary(const PlanRecord& plan);
 
-// The same with a table of all recordings, the intervals that the best one would give, and why
+// PlanSummary() with a table of all recordings, the intervals that the best one would give, and why
 // others cannot be made.
 std::string PlanReport(const PlanRecord& plan);
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/field_path.h"
 
 namespace lacuna {
 namespace {
@@ -21,8 +22,7 @@ std::string ValueText(const json& value) {
 // Every value of a configuration by its path: "effects[1].beta".
 void Flatten(const json& value, const std::string& path, std::map<std::string, std::string>* all) {
   if (value.is_object() && !value.empty()) {
-    for (const auto& [key, item] : value.items())
-      Flatten(item, path.empty() ? key : path + "." + key, all);
+    for (const auto& [key, item] : value.items()) Flatten(item, EntryOf(path, key), all);
   } else if (value.is_array() && !value.empty() && value.front().is_structured()) {
     for (size_t k = 0; k < value.size(); ++k)
       Flatten(value[k], fmt::format("{}[{}]", path, k), all);

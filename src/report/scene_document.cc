@@ -12,6 +12,7 @@
 #include "core/json_number.h"
 #include "geometry/thinned_surface.h"
 #include "record/json_vector.h"
+#include "record/model_errors.h"
 #include "record/motion_record.h"
 #include "record/packed_array.h"
 #include "record/recorded_residuals.h"
@@ -66,19 +67,71 @@ json PackPoints(const Eigen::MatrixXd& points) {
   return PackFrames(points, {static_cast<int>(points.rows() / 3), 3});
 }
 
-// Points from which the page computes: rounded to less than their noise of standard deviation
-// `sigma` in any case, since the steps of 16-bit numbers may exceed the noise of precise
-// measurements.
-json PackSeries(const Eigen::MatrixXd& points, double sigma) {
-  constexpr double kLargestStep = 0.05;  // in sigma; smaller: less rounding, larger files
-  constexpr double kSteps = 65534;       // of a 16-bit number (record/packed_array.h)
+// Numbers from which the page computes, with 16 bits where their steps are no larger than
+// `largest_step`, and in single precision otherwise.
+json PackSeries(const Eigen::MatrixXd& values, const std::vector<int>& of_frame,
+                double largest_step) {
+  constexpr double kSteps = 65534;  // of a 16-bit number (record/packed_array.h)
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const double value : points.reshaped()) {  // NaN: not observed
+  for (const double value : values.reshaped()) {  // NaN: not observed
     low = std::fmin(low, value);
     high = std::fmax(high, value);
   }
-  if (high - low <= kSteps * kLargestStep * sigma) return PackPoints(points);
-  return PackFloats(points, {static_cast<int>(points.rows() / 3), 3});
+  if (high - low <= kSteps * largest_step) return PackFrames(values, of_frame);
+  return PackFloats(values, of_frame);
+}
+
+// The smallest σ of a point, where points have noise of their own, or else `sigma`.
+double SmallestSigma(const RecordedResiduals& residuals, double sigma) {
+  double smallest = sigma;
+  for (const double own : residuals.sigma.reshaped()) smallest = std::fmin(smallest, own);
+  return smallest;
+}
+
+json PackPositions(const Eigen::MatrixXd& points, double smallest_sigma) {
+  constexpr double kLargestStep = 0.05;  // in σ; smaller: less rounding, larger files
+  return PackSeries(points, {static_cast<int>(points.rows() / 3), 3},
+                    kLargestStep * smallest_sigma);
+}
+
+// Whether the noise of some point in some frame differs from that of a typical one: points have
+// weights, or patches are means of different numbers of scanned points.
+bool PointsHaveOwnNoise(const RecordedResiduals& residuals, double sigma) {
+  constexpr double kSame = 1e-6;  // relative; above rounding errors
+  return ((residuals.sigma.array() / sigma - 1).abs() > kSame).any();
+}
+
+// The rms length that noise alone gives to the points seen in each frame; null where none was seen.
+json NoiseOfFrames(const RecordedResiduals& residuals, bool is_scan) {
+  json noise = json::array();
+  for (Eigen::Index f = 0; f < residuals.sigma.cols(); ++f) {
+    double sum = 0;
+    int seen = 0;
+    for (const double sigma : residuals.sigma.col(f)) {
+      if (std::isnan(sigma)) continue;
+      sum += sigma * sigma;
+      ++seen;
+    }
+    if (seen == 0) {
+      noise.push_back(nullptr);
+      continue;
+    }
+    const double rms = std::sqrt(sum / seen);
+    noise.push_back(is_scan ? rms : RmsOfMarkerNoise(rms));
+  }
+  return noise;
+}
+
+// Adds the σ of each point in each frame, and what they give to the rms of a frame.
+void AddOwnNoise(const RecordedResiduals& residuals, const std::vector<int>& shown, bool is_scan,
+                 double smallest_sigma, json* scene) {
+  constexpr double kLargestStep = 1e-3;  // relative to the smallest σ
+  const auto pack = [&](const Eigen::MatrixXd& sigmas) {
+    return PackSeries(sigmas, {static_cast<int>(sigmas.rows())}, kLargestStep * smallest_sigma);
+  };
+  (*scene)["points"]["sigmas"] = pack(residuals.sigma(Eigen::all, shown));
+  (*scene)["points_series"]["sigmas"] = pack(residuals.sigma);
+  (*scene)["series"]["noise_m"] = NoiseOfFrames(residuals, is_scan);
 }
 
 json SeriesOf(const RecordedResiduals& residuals, double sigma) {
@@ -140,27 +193,31 @@ json SceneOf(const ReportedModel& model, size_t r, const RecordedResiduals& resi
   json fitted = json::array();
   for (const int column : shown)
     fitted.push_back(residuals.fitted[static_cast<size_t>(column)] != 0);
-  return {{"recording", recording.name},
-          {"times", VectorToJson(residuals.times(shown))},
-          {"fitted", fitted},
-          {"up", motion ? motion->up : json()},
-          {"surface", motion ? motion->surface : json()},
-          {"points",
-           {{"names", names},
-            {"is_scan", recording.scan.has_value()},
-            {"measured", PackPoints(residuals.measured(Eigen::all, shown))},
-            {"model", PackPoints(modelled(Eigen::all, shown))},
-            {"residual", PackPoints(residuals.difference(Eigen::all, shown))},
-            {"sigma", sigma}}},
-          {"series", SeriesOf(residuals, sigma)},
-          {"points_series",
-           {{"time_s", VectorToJson(residuals.times)},
-            {"names", names},
-            {"measured", PackSeries(residuals.measured, sigma)},
-            {"model", PackSeries(modelled, sigma)}}},
-          {"force", ForceOf(forces, r)},
-          {"reactions", reactions},
-          {"notes", motion ? json(motion->notes) : json::array()}};
+  const double smallest_sigma = SmallestSigma(residuals, sigma);
+  json scene = {{"recording", recording.name},
+                {"times", VectorToJson(residuals.times(shown))},
+                {"fitted", fitted},
+                {"up", motion ? motion->up : json()},
+                {"surface", motion ? motion->surface : json()},
+                {"points",
+                 {{"names", names},
+                  {"is_scan", recording.scan.has_value()},
+                  {"measured", PackPoints(residuals.measured(Eigen::all, shown))},
+                  {"model", PackPoints(modelled(Eigen::all, shown))},
+                  {"residual", PackPoints(residuals.difference(Eigen::all, shown))},
+                  {"sigma", sigma}}},
+                {"series", SeriesOf(residuals, sigma)},
+                {"points_series",
+                 {{"time_s", VectorToJson(residuals.times)},
+                  {"names", names},
+                  {"measured", PackPositions(residuals.measured, smallest_sigma)},
+                  {"model", PackPositions(modelled, smallest_sigma)}}},
+                {"force", ForceOf(forces, r)},
+                {"reactions", reactions},
+                {"notes", motion ? json(motion->notes) : json::array()}};
+  if (PointsHaveOwnNoise(residuals, sigma))
+    AddOwnNoise(residuals, shown, recording.scan.has_value(), smallest_sigma, &scene);
+  return scene;
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ std::string SizeText(const UnexplainedForceRecord& force) {
   const NetForceSummary& net = force.net;
   std::string text = fmt::format(
       "a smooth body force of {} rms ({:.2g} % of the weight of the moving part) would have made "
-      "the model follow the markers. Its components are ",
+      "the model follow the recording. Its components are ",
       Newtons(net.rms.norm()), 100 * net.rms.norm() / net.weight);
   for (int axis = 0; axis < 3; ++axis)
     text += fmt::format("{}{:.2g} ± {:.1g} N in {}",
@@ -94,7 +94,7 @@ std::string DescribeUnexplainedForce(const UnexplainedForceRecord& force,
   if (!force.fit.is_significant) {
     return title +
            fmt::format(
-               "the smooth body force with which the model fits the markers best ({} rms) is not "
+               "the smooth body force with which the model fits the recording best ({} rms) is not "
                "significant; its standard deviation is {}. It would change the error over all "
                "frames from {:.1f} σ to {:.1f} σ.",
                Newtons(force.net.rms.norm()), Newtons(force.net.rms_deviation.norm()),

@@ -10,7 +10,8 @@
 
 namespace lacuna {
 
-// One of the unit, as in ParseAnyQuantity; nothing where it is unknown or the text is empty.
+// The quantity that one of this unit is, as ParseAnyQuantity() gives it; nothing where the unit is
+// unknown or the text is empty.
 std::optional<MeasuredQuantity> ParsedUnit(std::string_view unit);
 
 // The name of a column, and the unit behind it in brackets or parentheses: "Force" and "kN" of

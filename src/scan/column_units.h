@@ -15,7 +15,7 @@ struct DelimitedTable;
 // The unit that a table with names gives for a column, in the line below the names or else in
 // brackets in the name; empty where it gives none.
 std::string UnitOfColumn(const DelimitedTable& table, Eigen::Index column);
-// The same where that is a unit of length; empty where it is another remark.
+// UnitOfColumn() where that is a unit of length; empty where it is another remark.
 std::string LengthUnitOfColumn(const DelimitedTable& table, Eigen::Index column);
 
 // Throws InputError naming the table where it gives another unit for the column than `unit`: in the
@@ -26,7 +26,7 @@ std::string LengthUnitOfColumn(const DelimitedTable& table, Eigen::Index column)
 // the unit. A table without names has no such columns.
 void RefuseOtherUnit(const DelimitedTable& table, Eigen::Index column, double unit,
                      const Dimension& dimension, const std::string& key);
-// The same for several columns, by their names or numbers.
+// RefuseOtherUnit() for several columns, by their names or numbers.
 void RefuseOtherUnits(const DelimitedTable& table, const std::vector<std::string>& names,
                       double unit, const Dimension& dimension, const std::string& key);
 

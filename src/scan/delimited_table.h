@@ -62,7 +62,8 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file);
 // table when several columns have this name.
 std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::string& name);
 
-// The same, but throws InputError listing the columns of the table when there is no such column.
+// FindColumn() for a column that must be there. Throws InputError listing the columns of the table
+// when there is none.
 Eigen::Index RequireColumn(const DelimitedTable& table, const std::string& name);
 
 }  // namespace lacuna

@@ -3,9 +3,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "core/error.h"
+#include "core/parsed_word.h"
 #include "scan/delimited_table.h"
 #include "scan/table_text.h"
 
@@ -43,12 +43,8 @@ std::optional<Eigen::Index> OnlyColumn(const DelimitedTable& table, const std::s
 std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::string& name) {
   const std::vector<Eigen::Index> same = ColumnsNamed(table, name, /*case_counts=*/true);
   if (!same.empty()) return OnlyColumn(table, name, same);
-  int number = 0;
-  const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (problem == std::errc() && end == name.data() + name.size() && number >= 1 &&
-      number <= table.values.cols()) {
-    return number - 1;
-  }
+  const auto number = ParseWord<int>(name);
+  if (number && *number >= 1 && *number <= table.values.cols()) return *number - 1;
   return OnlyColumn(table, name, ColumnsNamed(table, name, /*case_counts=*/false));
 }
 

@@ -10,7 +10,8 @@
 //   GOM and ZEISS CSV      x, y, z, displacement_x …; x, y and z are places in the deformed state
 //   MatchID CSV            coor.X [mm] …, disp.Horizontal Displacement U [mm],
 //                          disp.Vertical Displacement V [mm], disp.Out-Of-Plane: W [mm]
-// Of places in pixels beside metric ones (x beside X) the exact name counts.
+// Where two columns differ in case only (x in pixels beside metric X), the one of exactly this name
+// counts.
 #ifndef LACUNA_SCAN_DISPLACEMENT_TABLE_H_
 #define LACUNA_SCAN_DISPLACEMENT_TABLE_H_
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "scan/random_bits.h"
+#include "core/random_bits.h"
 
 namespace lacuna {
 

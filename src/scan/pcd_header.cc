@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/parsed_word.h"
 #include "scan/table_numbers.h"
 #include "scan/table_text.h"
 
@@ -47,11 +47,9 @@ class HeaderReader {
   }
 
   size_t CountIn(std::string_view word) const {
-    size_t count = 0;
-    const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), count);
-    if (problem != std::errc() || end != word.data() + word.size() || count > kMostPoints)
-      Fail(fmt::format("got \"{}\"; expected a count", word));
-    return count;
+    const auto count = ParseWord<size_t>(word);
+    if (!count || *count > kMostPoints) Fail(fmt::format("got \"{}\"; expected a count", word));
+    return *count;
   }
 
   void Take(std::vector<std::string_view> words) {

@@ -9,8 +9,8 @@
 
 #include "core/median.h"
 #include "core/parallel.h"
+#include "core/random_bits.h"
 #include "geometry/nearest.h"
-#include "scan/random_bits.h"
 
 namespace lacuna {
 namespace {

@@ -5,22 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <limits>
-#include <system_error>
 
 #include "core/error.h"
 #include "core/letter_case.h"
+#include "core/parsed_word.h"
 
 namespace lacuna {
 
 std::optional<double> ParseNumber(std::string_view text) {
   if (text.empty()) return std::numeric_limits<double>::quiet_NaN();
-  if (text.front() == '+') text.remove_prefix(1);
-  double value = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  return ParseSignedWord<double>(text);
 }
 
 bool IsMissing(std::string_view text) {

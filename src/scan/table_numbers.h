@@ -13,8 +13,8 @@ namespace lacuna {
 // not a number.
 std::optional<double> ParseNumber(std::string_view text);
 
-// The same for a number with a decimal point or a decimal comma, and NaN for what tables have in
-// the place of a value that is missing (IsMissing).
+// ParseNumber() for a number with a decimal point or a decimal comma, and NaN for what tables have
+// in the place of a value that is missing (IsMissing).
 std::optional<double> ParseDecimal(std::string_view text);
 
 // Whether an entry says that there is no value: "NA", "N/A", "#N/A", "NULL" or "None" in any case,

@@ -12,7 +12,7 @@ namespace lacuna {
 // Whether two letters are the same, with regard to their case or without.
 bool IsSameLetter(char a, char b, bool case_counts);
 
-// Without blanks, tabs and line ends at both ends.
+// The text without blanks, tabs and line ends at both ends.
 std::string_view Trim(std::string_view text);
 
 // The lines of `content` without their ends, which may be those of Windows.

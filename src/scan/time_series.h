@@ -42,8 +42,8 @@ enum class Rows { kAll, kMeasured };
 TimeSeries ReadColumns(const Config& config, const DataLocation& data, const FrameData& frames,
                        const std::vector<std::string>& names, const ColumnUnit& unit, Rows rows);
 
-// The same for the components of a vector, the columns named by `x`, `y`, `z`. By default they are
-// called fx, fy, fz, of a force, or x, y, z; those of a table without names are 1, 2, 3.
+// ReadColumns() for the components of a vector, the columns named by `x`, `y`, `z`. By default they
+// are called fx, fy, fz, of a force, or x, y, z; those of a table without names are 1, 2, 3.
 TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data, const FrameData& frames,
                           const ColumnUnit& unit, Rows rows);
 

@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "scan/random_bits.h"
+#include "core/random_bits.h"
 
 namespace lacuna {
 namespace {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "search/cobyla_rules.h"
 #include "search/evaluator.h"
@@ -32,14 +34,10 @@ SearchResult MinimiseByCobyla(const SearchProblem& problem, const SearchControl&
   CHECK_GT(options.initial_radius, 0);
   CHECK_GT(options.final_radius, 0);
   Evaluator evaluator(problem, control, MethodName(options));
-  if (evaluator.n() == 0) {
-    evaluator.At(evaluator.start());
-    return evaluator.Finish(SearchStatus::kAllFixed);
-  }
+  if (std::optional<SearchResult> only = evaluator.FinishIfAllFixed()) return *std::move(only);
   Descent descent;
   descent.start = evaluator.start();
-  descent.initial_radius =
-      std::min(options.initial_radius, 0.5 * (evaluator.upper() - evaluator.lower()).minCoeff());
+  descent.initial_radius = evaluator.InitialRadius(options.initial_radius);
   descent.max_iterations = 1000 + 20 * control.max_evaluations;
   const CobylaRestarts& restarts = options.restarts;
   SearchStatus status = SearchStatus::kNotRun;

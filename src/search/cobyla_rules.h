@@ -1,4 +1,5 @@
-// One descent of COBYLA from one starting point, with either set of rules (cobyla.h).
+// One descent of COBYLA from one starting point, with either set of rules (cobyla.h): those of
+// Powell 1994 in powell_rules.cc, the modern ones in modern_rules.cc.
 #ifndef LACUNA_SEARCH_COBYLA_RULES_H_
 #define LACUNA_SEARCH_COBYLA_RULES_H_
 

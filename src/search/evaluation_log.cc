@@ -16,7 +16,7 @@ namespace {
 constexpr int kHashDigits = 16;
 constexpr char kRemedy[] = "remove this file, and the search starts again";
 
-std::string Signed(const std::string& content) {
+std::string WithChecksum(const std::string& content) {
   return HashBytes(content).substr(0, kHashDigits) + " " + content + "\n";
 }
 
@@ -70,15 +70,15 @@ EvaluationLog::EvaluationLog(const std::filesystem::path& file, const std::strin
   std::string text;
   if (std::filesystem::exists(file)) text = ReadWholeFile(file);
   const std::string header =
-      Signed("lacuna search log 1, " +
-             HashBytes(fmt::format("{} {} {}", key, variable_count, constraint_count)));
+      WithChecksum("lacuna search log 1, " +
+                   HashBytes(fmt::format("{} {} {}", key, variable_count, constraint_count)));
   size_t sound = 0;
   for (int line = 1; sound < text.size(); ++line) {
     const size_t end = text.find('\n', sound);
     if (end == std::string::npos) break;  // incomplete last line
     const std::string whole = text.substr(sound, end + 1 - sound);
     if (whole.size() <= kHashDigits + 2 ||
-        Signed(whole.substr(kHashDigits + 1, whole.size() - kHashDigits - 2)) != whole) {
+        WithChecksum(whole.substr(kHashDigits + 1, whole.size() - kHashDigits - 2)) != whole) {
       if (end + 1 == text.size()) break;
       throw InputError({file.string(), line}, fmt::format("the line is damaged; {}", kRemedy));
     }
@@ -106,7 +106,7 @@ EvaluationLog::EvaluationLog(const std::filesystem::path& file, const std::strin
 }
 
 void EvaluationLog::Append(const SearchStep& step) {
-  stream_ << Signed(ContentOf(step)) << std::flush;
+  stream_ << WithChecksum(ContentOf(step)) << std::flush;
   if (!stream_) throw InputError({file_.string()}, "cannot be written");
 }
 

@@ -66,6 +66,10 @@ Evaluator::Evaluator(const SearchProblem& problem, const SearchControl& control,
   }
 }
 
+double Evaluator::InitialRadius(double radius) const {
+  return std::min(radius, 0.5 * (upper_ - lower_).minCoeff());
+}
+
 SearchStep Evaluator::Evaluate(Eigen::VectorXd x) {
   const int index = evaluation_count();
   if (log_ && index < static_cast<int>(log_->steps().size())) {
@@ -146,6 +150,12 @@ SearchResult Evaluator::Finish(SearchStatus status, const std::string& message) 
   }
   result_.trace_hash = HashBytes(bits);
   return std::move(result_);
+}
+
+std::optional<SearchResult> Evaluator::FinishIfAllFixed() {
+  if (n() > 0) return std::nullopt;
+  At(start_);
+  return Finish(SearchStatus::kAllFixed);
 }
 
 }  // namespace lacuna

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ class Evaluator {
   Eigen::VectorXd Within(const Eigen::VectorXd& x) const {
     return x.cwiseMax(lower_).cwiseMin(upper_);
   }
+  // The length of the first steps of a search that asks for `radius`: at most half of the narrowest
+  // range of a free variable.
+  double InitialRadius(double radius) const;
 
   // Returns the outcome at `free_x` (n), which must lie within the bounds (CHECK). A point is
   // evaluated once; later requests return the stored outcome. Returns null once the search must
@@ -55,6 +59,8 @@ class Evaluator {
   // Returns the result. If a stopping rule has ended the search, its status takes precedence over
   // `status`. Call it once, at the end.
   SearchResult Finish(SearchStatus status, const std::string& message = "");
+  // If no variable is free, evaluates the only point and returns the result, as Finish() does.
+  std::optional<SearchResult> FinishIfAllFixed();
 
  private:
   Eigen::VectorXd Whole(const Eigen::VectorXd& free_x) const;  // adds the fixed variables

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "search/cobyla.h"
@@ -85,10 +86,8 @@ class GaussianProcessSearch {
   }
 
   void Observe(const VectorXd& u) {
-    const VectorXd x =
-        (evaluator_.lower() + u.cwiseProduct(evaluator_.upper() - evaluator_.lower()))
-            .cwiseMax(evaluator_.lower())
-            .cwiseMin(evaluator_.upper());
+    const VectorXd x = evaluator_.Within(evaluator_.lower() +
+                                         u.cwiseProduct(evaluator_.upper() - evaluator_.lower()));
     const int before = evaluator_.evaluation_count();
     const Evaluation* outcome = evaluator_.At(x);
     if (outcome == nullptr || evaluator_.evaluation_count() == before) return;
@@ -196,10 +195,7 @@ SearchResult MinimiseByGaussianProcess(const SearchProblem& problem, const Searc
                                   options.candidates, options.likelihoods, options.seed));
   CHECK_LE(evaluator.n(), static_cast<int>(kPrimes.size()));
   CHECK(evaluator.lower().allFinite() && evaluator.upper().allFinite());
-  if (evaluator.n() == 0) {
-    evaluator.At(evaluator.start());
-    return evaluator.Finish(SearchStatus::kAllFixed);
-  }
+  if (std::optional<SearchResult> only = evaluator.FinishIfAllFixed()) return *std::move(only);
   GaussianProcessSearch(options, &evaluator).Run(control.max_evaluations);
   return evaluator.Finish(SearchStatus::kIterationLimit);
 }

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <type_traits>
+#include <utility>
 
 #include "search/evaluator.h"
 
@@ -51,7 +53,7 @@ class Bridge {
     try {
       const VectorXd asked = Eigen::Map<const VectorXd>(x, evaluator_.n());
       if (!problem_ && asked.allFinite()) {
-        outcome = evaluator_.At(asked.cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper()));
+        outcome = evaluator_.At(evaluator_.Within(asked));
       }
     } catch (...) {
       problem_ = std::current_exception();
@@ -89,10 +91,7 @@ SearchResult MinimiseByNlopt(const SearchProblem& problem, const SearchControl& 
   Evaluator evaluator(problem, control,
                       fmt::format("nlopt {} {:a} {:a}", is_cobyla ? "cobyla" : "bobyqa",
                                   options.initial_radius, options.final_radius));
-  if (evaluator.n() == 0) {
-    evaluator.At(evaluator.start());
-    return evaluator.Finish(SearchStatus::kAllFixed);
-  }
+  if (std::optional<SearchResult> only = evaluator.FinishIfAllFixed()) return *std::move(only);
   CHECK(is_cobyla || evaluator.n() >= 2);
   const std::unique_ptr<std::remove_pointer_t<nlopt_opt>, void (*)(nlopt_opt)> optimiser(
       nlopt_create(is_cobyla ? NLOPT_LN_COBYLA : NLOPT_LN_BOBYQA, evaluator.n()), nlopt_destroy);
@@ -106,8 +105,7 @@ SearchResult MinimiseByNlopt(const SearchProblem& problem, const SearchControl& 
     nlopt_add_inequality_mconstraint(optimiser.get(), evaluator.m(), ConstraintCallback, &bridge,
                                      tolerances.data());
   }
-  const double radius =
-      std::min(options.initial_radius, 0.5 * (evaluator.upper() - evaluator.lower()).minCoeff());
+  const double radius = evaluator.InitialRadius(options.initial_radius);
   nlopt_set_initial_step1(optimiser.get(), radius);
   // Both algorithms apply this tolerance relative to the initial radius, not to x.
   nlopt_set_xtol_rel(optimiser.get(), options.final_radius / radius);

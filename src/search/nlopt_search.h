@@ -21,7 +21,7 @@ enum class NloptAlgorithm {
 
 struct NloptOptions {
   NloptAlgorithm algorithm = NloptAlgorithm::kCobyla;
-  // As in CobylaOptions (cobyla.h), in the units of the variables.
+  // Initial and final radius as in CobylaOptions (cobyla.h), in the units of the variables.
   double initial_radius = 0.25;
   double final_radius = 1e-3;
 };

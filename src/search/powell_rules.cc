@@ -168,15 +168,8 @@ class PowellDescent {
                               : 0;
     if (penalty_ >= 1.5 * needed) return false;
     penalty_ = 2 * needed;
-    const int pole = simplex_.pole();
-    const double merit = simplex_.Merit(pole, penalty_);
-    for (int j = 0; j < simplex_.n(); ++j) {
-      const double other = simplex_.Merit(j, penalty_);
-      if (other < merit ||
-          (other == merit && penalty_ == 0 && simplex_.violation(j) < simplex_.violation(pole))) {
-        return true;
-      }
-    }
+    for (int j = 0; j < simplex_.n(); ++j)
+      if (simplex_.IsBetter(j, simplex_.pole(), penalty_)) return true;
     return false;
   }
 

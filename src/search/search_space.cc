@@ -8,8 +8,6 @@
 
 namespace lacuna {
 
-using Eigen::VectorXd;
-
 SearchSpace::SearchSpace(std::vector<SearchVariable> variables) : variables_(std::move(variables)) {
   for (const SearchVariable& variable : variables_) {
     CHECK(std::isfinite(variable.lower) && std::isfinite(variable.upper)) << variable.name;
@@ -18,8 +16,8 @@ SearchSpace::SearchSpace(std::vector<SearchVariable> variables) : variables_(std
   }
 }
 
-VectorXd SearchSpace::ToUnit(const VectorXd& x) const {
-  VectorXd u(x.size());
+Eigen::VectorXd SearchSpace::ToUnit(const Eigen::VectorXd& x) const {
+  Eigen::VectorXd u(x.size());
   for (int i = 0; i < x.size(); ++i) {
     const SearchVariable& variable = variables_[i];
     if (variable.lower == variable.upper) {
@@ -34,8 +32,8 @@ VectorXd SearchSpace::ToUnit(const VectorXd& x) const {
   return u;
 }
 
-VectorXd SearchSpace::FromUnit(const VectorXd& u) const {
-  VectorXd x(u.size());
+Eigen::VectorXd SearchSpace::FromUnit(const Eigen::VectorXd& u) const {
+  Eigen::VectorXd x(u.size());
   for (int i = 0; i < u.size(); ++i) {
     const SearchVariable& variable = variables_[i];
     if (u[i] >= 1) {
@@ -50,8 +48,8 @@ VectorXd SearchSpace::FromUnit(const VectorXd& u) const {
   return x;
 }
 
-VectorXd SearchSpace::SlopeAt(const VectorXd& u) const {
-  VectorXd slope = FromUnit(u);
+Eigen::VectorXd SearchSpace::SlopeAt(const Eigen::VectorXd& u) const {
+  Eigen::VectorXd slope = FromUnit(u);
   for (int i = 0; i < u.size(); ++i) {
     const SearchVariable& variable = variables_[i];
     const double range = variable.upper - variable.lower;
@@ -62,26 +60,26 @@ VectorXd SearchSpace::SlopeAt(const VectorXd& u) const {
   return slope;
 }
 
-SearchProblem SearchSpace::ProblemOf(std::function<Evaluation(const VectorXd& x)> evaluate,
-                                     int constraint_count,
-                                     std::function<VectorXd(const VectorXd& x)> gradient) const {
+SearchProblem SearchSpace::ProblemOf(
+    std::function<Evaluation(const Eigen::VectorXd& x)> evaluate, int constraint_count,
+    std::function<Eigen::VectorXd(const Eigen::VectorXd& x)> gradient) const {
   const int n = static_cast<int>(variables_.size());
   SearchProblem problem;
-  VectorXd start(n);
-  problem.lower = VectorXd::Zero(n);
-  problem.upper = VectorXd::Ones(n);
+  Eigen::VectorXd start(n);
+  problem.lower = Eigen::VectorXd::Zero(n);
+  problem.upper = Eigen::VectorXd::Ones(n);
   for (int i = 0; i < n; ++i) {
     start[i] = variables_[i].start;
     if (variables_[i].lower == variables_[i].upper) problem.upper[i] = 0;
   }
   problem.start = ToUnit(start);
   problem.constraint_count = constraint_count;
-  problem.evaluate = [space = *this, evaluate = std::move(evaluate)](const VectorXd& u) {
+  problem.evaluate = [space = *this, evaluate = std::move(evaluate)](const Eigen::VectorXd& u) {
     return evaluate(space.FromUnit(u));
   };
   if (gradient) {
-    problem.gradient = [space = *this, gradient = std::move(gradient)](const VectorXd& u) {
-      return VectorXd(gradient(space.FromUnit(u)).cwiseProduct(space.SlopeAt(u)));
+    problem.gradient = [space = *this, gradient = std::move(gradient)](const Eigen::VectorXd& u) {
+      return Eigen::VectorXd(gradient(space.FromUnit(u)).cwiseProduct(space.SlopeAt(u)));
     };
   }
   return problem;

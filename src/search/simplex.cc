@@ -97,14 +97,15 @@ void Simplex::Replace(int j, const VectorXd& x, const Evaluation& outcome) {
   violations_[j] = Violation(outcome.constraints);
 }
 
+bool Simplex::IsBetter(int j, int k, double penalty) const {
+  const double merit = Merit(j, penalty), other = Merit(k, penalty);
+  return merit < other || (merit == other && penalty == 0 && violations_[j] < violations_[k]);
+}
+
 bool Simplex::MovePole(double penalty) {
   int best = n();
-  for (int j = 0; j < n(); ++j) {
-    const double merit = Merit(j, penalty), least = Merit(best, penalty);
-    if (merit < least || (merit == least && penalty == 0 && violations_[j] < violations_[best])) {
-      best = j;
-    }
-  }
+  for (int j = 0; j < n(); ++j)
+    if (IsBetter(j, best, penalty)) best = j;
   if (best != n()) {
     vertices_.col(best).swap(vertices_.col(n()));
     constraints_.col(best).swap(constraints_.col(n()));

@@ -36,6 +36,9 @@ class Simplex {
   Eigen::VectorXd Constraints(int j) const { return constraints_.col(j); }
   // The merit f + penalty · max(0, max_i -c_i) at vertex j.
   double Merit(int j, double penalty) const { return values_[j] + penalty * violations_[j]; }
+  // Whether vertex j has less merit than vertex k or, where that is equal and the penalty 0, a
+  // smaller violation.
+  bool IsBetter(int j, int k, double penalty) const;
 
   // Makes the vertex of least merit the pole. Returns false if the simplex is degenerate; the
   // functions below must then not be called.

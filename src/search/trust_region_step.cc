@@ -87,7 +87,6 @@ class Path {
 
   std::vector<Row>& rows() { return rows_; }
   const VectorXd& d() const { return d_; }
-  double parameter() const { return parameter_; }
 
   // Fixes the rows at the current parameter τ and resets τ to 0.
   void Freeze() {
@@ -98,61 +97,22 @@ class Path {
     parameter_ = 0;
   }
 
+  // Follows the path to τ = `end`, to the radius, or to where no step is possible.
   PathEnd Follow(const VectorXd& h, double end) {
     const int cap = 100 * (static_cast<int>(rows_.size()) + 1);
     for (int change = 0; change < cap; ++change) {
       const Basis basis(rows_, active_);
-      VectorXd row_rates(basis.size()), target_rates(basis.size());
-      for (int i = 0; i < basis.size(); ++i) {
-        row_rates[i] = rows_[active_[i]].rate;
-        target_rates[i] = row_rates[i] + OrderedDot(rows_[active_[i]].normal, h);
-      }
-      const VectorXd multiplier_rates = basis.SolveUpper(basis.SolveLower(target_rates));
-      VectorXd along = -basis.WithoutNormals(h);
-      if (OrderedNorm(along) <= 1e-12 * OrderedNorm(h)) along.setZero();
-      const VectorXd lift = basis.SolveLower(row_rates);
-      for (int i = 0; i < basis.size(); ++i) along += lift[i] * basis.q[i];
-
-      double length = end - parameter_;
-      int dropped = -1, added = -1;
-      for (int i = 0; i < basis.size(); ++i) {
-        if (multiplier_rates[i] >= 0) continue;
-        const double at = std::max(0.0, -multipliers_[i] / multiplier_rates[i]);
-        if (at < length) {
-          length = at;
-          dropped = i;
-        }
-      }
-      const double speed = OrderedNorm(along);
-      for (int j = 0; j < static_cast<int>(rows_.size()); ++j) {
-        if (std::find(active_.begin(), active_.end(), j) != active_.end()) continue;
-        const Row& row = rows_[j];
-        const double closing = OrderedDot(row.normal, along) - row.rate;
-        if (closing >= -1e-12 * (speed + std::abs(row.rate))) continue;
-        const double slack = OrderedDot(row.normal, d_) - row.bound - row.rate * parameter_;
-        const double at = std::max(0.0, slack) / -closing;
-        if (at < length) {
-          length = at;
-          added = j;
-          dropped = -1;
-        }
-      }
-      const double to_radius = LengthToRadius(along);
-      if (std::isinf(to_radius) && std::isinf(length)) return PathEnd::kParameter;
-      if (to_radius <= length) {
-        d_ += to_radius * along;
-        parameter_ += to_radius;
-        return PathEnd::kRadius;
-      }
-      d_ += length * along;
-      parameter_ += length;
-      for (int i = 0; i < basis.size(); ++i) {
-        multipliers_[i] = std::max(0.0, multipliers_[i] + length * multiplier_rates[i]);
-      }
-      if (added >= 0) {
-        if (!Add(added, basis)) return PathEnd::kBlocked;
-      } else if (dropped >= 0) {
-        Drop(dropped);
+      const Rates rates = RatesOf(h, basis);
+      const Event event = NextEvent(rates, end);
+      const double to_radius = LengthToRadius(rates.d);
+      if (std::isinf(to_radius) && std::isinf(event.length)) return PathEnd::kParameter;
+      const bool is_at_radius = to_radius <= event.length;
+      Advance(is_at_radius ? to_radius : event.length, rates);
+      if (is_at_radius) return PathEnd::kRadius;
+      if (event.added >= 0) {
+        if (!Add(event.added, basis)) return PathEnd::kBlocked;
+      } else if (event.dropped >= 0) {
+        Drop(event.dropped);
       } else {
         return PathEnd::kParameter;
       }
@@ -161,6 +121,63 @@ class Path {
   }
 
  private:
+  // Derivatives with respect to τ while the active rows remain the same.
+  struct Rates {
+    VectorXd d;
+    VectorXd multipliers;
+  };
+
+  // The end of such a piece of the path: the change of τ up to it, and the row that becomes active
+  // or the position among the active rows that ceases to be active there, −1 for none.
+  struct Event {
+    double length = 0;
+    int added = -1, dropped = -1;
+  };
+
+  // `basis`: that of the normals of the active rows.
+  Rates RatesOf(const VectorXd& h, const Basis& basis) const {
+    VectorXd row_rates(basis.size()), target_rates(basis.size());
+    for (int i = 0; i < basis.size(); ++i) {
+      row_rates[i] = rows_[active_[i]].rate;
+      target_rates[i] = row_rates[i] + OrderedDot(rows_[active_[i]].normal, h);
+    }
+    VectorXd along = -basis.WithoutNormals(h);
+    if (OrderedNorm(along) <= 1e-12 * OrderedNorm(h)) along.setZero();
+    const VectorXd lift = basis.SolveLower(row_rates);
+    for (int i = 0; i < basis.size(); ++i) along += lift[i] * basis.q[i];
+    return {along, basis.SolveUpper(basis.SolveLower(target_rates))};
+  }
+
+  // The first change of the active rows, or the end of the path where there is none before it.
+  Event NextEvent(const Rates& rates, double end) const {
+    Event next{end - parameter_};
+    for (int i = 0; i < static_cast<int>(active_.size()); ++i) {
+      if (rates.multipliers[i] >= 0) continue;
+      const double at = std::max(0.0, -multipliers_[i] / rates.multipliers[i]);
+      if (at < next.length) next = {.length = at, .dropped = i};
+    }
+    const double speed = OrderedNorm(rates.d);
+    for (int j = 0; j < static_cast<int>(rows_.size()); ++j) {
+      if (std::find(active_.begin(), active_.end(), j) != active_.end()) continue;
+      const Row& row = rows_[j];
+      const double closing = OrderedDot(row.normal, rates.d) - row.rate;
+      if (closing >= -1e-12 * (speed + std::abs(row.rate))) continue;
+      const double slack = OrderedDot(row.normal, d_) - row.bound - row.rate * parameter_;
+      const double at = std::max(0.0, slack) / -closing;
+      if (at < next.length) next = {.length = at, .added = j};
+    }
+    return next;
+  }
+
+  void Advance(double length, const Rates& rates) {
+    d_ += length * rates.d;
+    parameter_ += length;
+    for (size_t i = 0; i < active_.size(); ++i) {
+      const Eigen::Index at = static_cast<Eigen::Index>(i);
+      multipliers_[i] = std::max(0.0, multipliers_[i] + length * rates.multipliers[at]);
+    }
+  }
+
   double LengthToRadius(const VectorXd& along) const {
     const double speed2 = OrderedDot(along, along);
     if (speed2 == 0) return std::numeric_limits<double>::infinity();

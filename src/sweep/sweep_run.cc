@@ -124,7 +124,7 @@ int RunSweep(const fs::path& given_folder, const SweepRunOptions& options) {
   work.crashed = [&](size_t k, const std::string& reason) {
     KeepCrash(to_run[k], folder / to_run[k].name, reason, options.retry_failed);
   };
-  ShareOut(to_run.size(), work, [&](size_t k) {
+  RunInProcesses(to_run.size(), work, [&](size_t k) {
     RunCase(identity, to_run[k], folder / to_run[k].name, options.retry_failed);
   });
   ThrowIfInterrupted();

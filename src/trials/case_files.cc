@@ -43,9 +43,9 @@ std::vector<size_t> WorkOrder(const std::vector<std::filesystem::path>& cases) {
   return indices;
 }
 
-int ShareCases(const std::vector<std::filesystem::path>& cases,
-               const std::filesystem::path& of_lock, const WorkerOptions& options,
-               const std::function<void(size_t k)>& job) {
+bool ShareCases(const std::vector<std::filesystem::path>& cases,
+                const std::filesystem::path& of_lock, const WorkerOptions& options,
+                const std::function<void(size_t k)>& job) {
   const std::vector<size_t> order = WorkOrder(cases);
   WorkerOptions ordered = options;
   if (options.crashed)
@@ -53,14 +53,14 @@ int ShareCases(const std::vector<std::filesystem::path>& cases,
       options.crashed(order[at], reason);
     };
   for (const std::filesystem::path& own : cases) MakeFolder(own / of_lock);
-  return ShareOut(cases.size(), ordered, [&](size_t at) {
+  return RunInProcesses(cases.size(), ordered, [&](size_t at) {
     const Claim claim(cases[order[at]] / of_lock / kClaimFile);
     if (claim.holds()) job(order[at]);
   });
 }
 
-int WorkOn(const std::vector<std::filesystem::path>& cases, const std::filesystem::path& result,
-           int workers, const std::function<void(size_t k)>& job) {
+bool WorkOn(const std::vector<std::filesystem::path>& cases, const std::filesystem::path& result,
+            int workers, const std::function<void(size_t k)>& job) {
   const auto failure = [&](size_t k) { return cases[k] / result.parent_path() / kFailureFile; };
   const auto keep_failure = [&](size_t k, const std::string& reason) {
     WriteFileAtomically(failure(k), reason + "\n");

@@ -14,7 +14,8 @@ namespace lacuna {
 inline constexpr char kTruthFile[] = "truth.json";  // a TrialCase
 inline constexpr char kExperimentFile[] = "experiment.yaml";
 inline constexpr char kWithoutFile[] = "without.txt";  // types of removed effects, one in each line
-// Of a diagnosis; the folder holds what it was decided from (diagnosis/decision_store.h).
+// The record of a diagnosis, and the folder of what it was decided from
+// (diagnosis/decision_store.h).
 inline constexpr char kDiagnosisFile[] = "diagnosis.json";
 inline constexpr char kDecisionFolder[] = "decision";
 inline constexpr char kOutcomeFile[] = "outcome.json";  // a TrialOutcome, written last
@@ -38,17 +39,17 @@ std::vector<size_t> WorkOrder(const std::vector<std::filesystem::path>& cases);
 
 // Calls job(k) for each case in WorkOrder, in processes as `options` says, unless another call
 // works on it: the lock (core/claim.h) is in the folder `of_lock` of the case, which is made.
-// Returns the result of ShareOut (core/workers.h).
-int ShareCases(const std::vector<std::filesystem::path>& cases,
-               const std::filesystem::path& of_lock, const WorkerOptions& options,
-               const std::function<void(size_t k)>& job);
+// Returns the result of RunInProcesses (core/workers.h).
+bool ShareCases(const std::vector<std::filesystem::path>& cases,
+                const std::filesystem::path& of_lock, const WorkerOptions& options,
+                const std::function<void(size_t k)>& job);
 
 // For each case k whose folder has no file `result` yet, a path relative to it, calls job(k), which
 // makes it, by ShareCases with the lock beside the result, `workers` at a time. If the job throws
 // InputError or its process crashes, failed.txt beside the result has the reason until a later call
 // has made the result. Returns the result of ShareCases, for which an InputError is no failure.
-int WorkOn(const std::vector<std::filesystem::path>& cases, const std::filesystem::path& result,
-           int workers, const std::function<void(size_t k)>& job);
+bool WorkOn(const std::vector<std::filesystem::path>& cases, const std::filesystem::path& result,
+            int workers, const std::function<void(size_t k)>& job);
 
 }  // namespace lacuna
 

@@ -10,13 +10,13 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/json_file.h"
+#include "core/random_bits.h"
 #include "diagnosis/decision.h"
 #include "diagnosis/decision_store.h"
 #include "plan/planned_experiment.h"
 #include "plan/planner.h"
 #include "prediction/prediction_study_reader.h"
 #include "scan/marker_frames.h"
-#include "scan/random_bits.h"
 #include "scan/recorded_grip.h"
 #include "trials/case_files.h"
 #include "trials/trial_load_cell.h"
@@ -217,7 +217,7 @@ std::vector<fs::path> FollowUpFolders(const fs::path& own) {
   return {own / kFollowUpFolder / "best", own / kFollowUpFolder / "random"};
 }
 
-int RunFollowUps(const fs::path& folder, int workers) {
+bool RunFollowUps(const fs::path& folder, int workers) {
   const std::vector<fs::path> open = OpenCasesIn(folder);
   return WorkOn(open, kFollowUpFile, workers,
                 [&](size_t k) { SaveFollowUps(MakeFollowUps(open[k]), open[k]); });

@@ -1,6 +1,6 @@
 // Do the recordings that a plan proposes decide?
 //
-// Of each case whose diagnosis has left one hidden effect open, the recording that the plan
+// For each case whose diagnosis has left one hidden effect open, the recording that the plan
 // (plan/planner.h) ranks first is made with the true bar, and both recordings are diagnosed
 // together. For comparison the same is done with a recording that is chosen at random among those
 // of the plan that last as long.
@@ -56,7 +56,7 @@ bool IsOpen(const TrialCase& trial, const TrialOutcome& outcome);
 
 // Makes the follow-ups of all open cases of a folder that have none yet, in <case>/follow_up: see
 // WorkOn (trials/case_files.h), which keeps other failures than those of CaseFollowUps.
-int RunFollowUps(const std::filesystem::path& folder, int workers);
+bool RunFollowUps(const std::filesystem::path& folder, int workers);
 
 // Writes and reads what a case's folder keeps; the outcomes of its follow-ups stand in folders of
 // their own, best/ and random/. Nothing is read where no follow-ups were made. Throw InputError.

@@ -17,14 +17,13 @@
 #include "core/error.h"
 #include "core/json_file.h"
 #include "core/progress.h"
+#include "core/random_bits.h"
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
-#include "effects/neo_hookean.h"
-#include "effects/stiffness_damping.h"
+#include "effects/standard_cards.h"
 #include "fit/calibration.h"
 #include "prediction/prediction_study_reader.h"
 #include "report/line_chart.h"
-#include "scan/random_bits.h"
 #include "trials/case_files.h"
 #include "trials/trial_simulation.h"
 #include "trials/trial_suite.h"
@@ -280,7 +279,8 @@ std::vector<JudgedParameter> Judge(const CalibrationRecord& record, const TrialC
   return judged;
 }
 
-int RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& folder, int workers) {
+bool RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& folder,
+                      int workers) {
   std::vector<std::filesystem::path> draws;
   for (int k = 0; k < suite.draws; ++k) {
     const TrialCase drawn = DrawIntervalCase(suite, k);

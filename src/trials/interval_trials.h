@@ -79,7 +79,7 @@ struct IntervalReport {
 
 // Makes and fits the draws of the suite that have no intervals.json in the folder yet: see WorkOn
 // (trials/case_files.h).
-int RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& folder, int workers);
+bool RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& folder, int workers);
 // Throws InputError if a file cannot be read.
 IntervalReport ReportIntervals(const std::filesystem::path& folder);
 std::string IntervalReportInWords(const IntervalReport& report);

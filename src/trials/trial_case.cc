@@ -11,10 +11,10 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/json_file.h"
+#include "core/random_bits.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
-#include "scan/random_bits.h"
 #include "trials/case_files.h"
 
 namespace lacuna {

@@ -39,14 +39,14 @@ struct TrialRates {
   Rate named_in_controls, named_in_hard_controls;
   // Cases with one hidden effect of the catalogue.
   Rate named;            // the verdict "missing" names the effect and no other
-  Rate decidable_named;  // the same, of those that kDecidable calls decidable
+  Rate decidable_named;  // `named`, of the decidable cases (kDecidable)
   Rate family;           // of the verdicts that name effects, those that name one of its family
   Rate wrong_member;     // the verdict "missing" names another effect of its family
-  Rate outside_family;   // ... of another family
+  Rate outside_family;   // the verdict "missing" names an effect of another family
   // Cases whose effect was removed from the catalogue.
   Rate removed_member, removed_outside;  // an effect of its family, of another family was named
-  Rate not_in_library;                   // all such verdicts
-  Rate decidable_not_in_library;         // those of the decidable cases
+  Rate not_in_library;                   // the verdict is "not in library"
+  Rate decidable_not_in_library;         // `not_in_library`, of the decidable cases
   // All cases but those with a removed effect, and those with the verdict "not in library", which
   // says that the truth is not among the hypotheses.
   std::array<ReliabilityBin, 5> reliability = {

@@ -6,10 +6,10 @@
 #include <numbers>
 
 #include "core/atomic_file.h"
+#include "core/random_bits.h"
 #include "core/text_file.h"
 #include "geometry/embedding.h"
 #include "scan/marker_frames.h"
-#include "scan/random_bits.h"
 #include "scan/scan_writer.h"
 #include "trials/clamp_motion.h"
 #include "trials/trial_load_cell.h"

@@ -22,8 +22,8 @@ struct TrialTally {
   int nameable = 0;  // cases that hide effects of the library; only `wrong` counts others, too
   int pairs = 0;     // cases that hide two
   int top1 = 0, in_part = 0, wrong = 0;
-  // Those of `top1` and `in_part`, and the verdicts "missing" and "ambiguous" where a hidden effect
-  // is among the first two of the ranking or in the set of the ambiguous verdict.
+  // The cases of `top1` and `in_part`, and the verdicts "missing" and "ambiguous" where a hidden
+  // effect is among the first two of the ranking or in the set of the ambiguous verdict.
   int top2 = 0;
   int ranked_first = 0;  // a hidden effect is first in the ranking, whatever the verdict
   std::map<std::string, int> verdicts;

@@ -213,7 +213,7 @@ bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output
   return true;
 }
 
-int RunTrials(const std::filesystem::path& folder, int workers) {
+bool RunTrials(const std::filesystem::path& folder, int workers) {
   const std::vector<std::filesystem::path> cases = CasesIn(folder);
   return WorkOn(cases, kOutcomeFile, workers,
                 [&](size_t k) { SaveTrialOutcome(RunCase(cases[k], cases[k]), cases[k]); });

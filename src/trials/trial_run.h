@@ -58,7 +58,7 @@ TrialOutcome LoadTrialOutcome(const std::filesystem::path& folder);
 bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output);
 
 // Diagnoses all cases of a folder that have no outcome yet: see WorkOn (trials/case_files.h).
-int RunTrials(const std::filesystem::path& folder, int workers);
+bool RunTrials(const std::filesystem::path& folder, int workers);
 
 }  // namespace lacuna
 

@@ -12,16 +12,15 @@
 
 #include "calibration/linear_misfit.h"
 #include "core/atomic_file.h"
+#include "core/random_bits.h"
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
-#include "effects/neo_hookean.h"
-#include "effects/stiffness_damping.h"
+#include "effects/standard_cards.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
-#include "scan/random_bits.h"
 #include "trials/case_files.h"
 #include "trials/trial_load_cell.h"
 #include "trials/trial_simulation.h"
@@ -323,7 +322,7 @@ bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
   return true;
 }
 
-int MakeTrials(const TrialSuite& suite, const std::filesystem::path& folder, int workers) {
+bool MakeTrials(const TrialSuite& suite, const std::filesystem::path& folder, int workers) {
   const std::vector<TrialCase> cases = CasesOf(suite);
   MakeFolder(folder);
   std::vector<std::filesystem::path> folders;

@@ -51,7 +51,7 @@ bool MakeCase(TrialCase trial, const std::filesystem::path& folder);
 // Makes all cases of a suite that do not exist yet, in `workers` processes. Returns the result of
 // ShareCases (case_files.h), for which an abandoned case is no failure, and an InputError of
 // MakeCase is one.
-int MakeTrials(const TrialSuite& suite, const std::filesystem::path& folder, int workers);
+bool MakeTrials(const TrialSuite& suite, const std::filesystem::path& folder, int workers);
 
 }  // namespace lacuna
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "app/command_line.h"
 #include "scan/recording_writer.h"
 #include "support/ended_program.h"
 #include "support/small_ledger.h"
@@ -26,16 +27,8 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
-Ending Lacuna(const std::string& arguments) {
-  return EndingOf(std::string(LACUNA_PROGRAM) + " " + arguments);
-}
-
 Ending Trials(const std::string& arguments) {
   return EndingOf(std::string(LACUNA_TRIALS_PROGRAM) + " " + arguments);
-}
-
-std::string Experiment(const std::string& name) {
-  return std::string(LACUNA_SOURCE_DIR) + "/experiments/" + name;
 }
 
 TEST(TrialsProgram, UnusableInputGivesTheStatusAndTheFormOfMessageOfLacuna) {

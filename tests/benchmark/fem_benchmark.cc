@@ -183,7 +183,8 @@ struct Result {
 Result Simulate(const Beam& beam, const Motion& motion, int steps, double tolerance) {
   const Body& body = *beam.model.body;
   Result result;
-  LinearSolver solver(body.pattern, beam.fixed, {.relative_tolerance = tolerance});
+  LinearSolver solver(body.pattern, HeldComponents(HeldAxes(beam.model)),
+                      {.relative_tolerance = tolerance});
   BlockMatrix tangent(body.pattern);
   MotionHistory history = RestHistory(beam.model);
   for (int step = 0; step < steps; ++step) {
@@ -235,7 +236,7 @@ Reference Compare(const Beam& beam, const Result& result, int threads) {
   const EliminationOrder order = NestedDissection(*body.pattern, beam.fixed);
   CholmodFactor factor(*body.pattern, order);
   LinearSolver direct(
-      body.pattern, beam.fixed,
+      body.pattern, HeldComponents(HeldAxes(beam.model)),
       {.method = LinearSolverOptions::Method::kDirect, .relative_tolerance = 1e-13});
   BlockMatrix tangent(body.pattern);
   Reference reference;

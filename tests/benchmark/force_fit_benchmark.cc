@@ -9,7 +9,7 @@
 #include "core/blas_kernels.h"
 #include "effects/catalogue.h"
 #include "fem/prescribed_force.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "fit/coefficient_fit.h"
 #include "fit/position_fit.h"
 #include "support/box_mesh.h"

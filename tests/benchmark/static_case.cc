@@ -14,7 +14,7 @@
 #include "core/logging.h"
 #include "effects/catalogue.h"
 #include "fem/prescribed_force.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "geometry/embedding.h"
 #include "support/box_mesh.h"
 #include "support/marker_recording.h"

@@ -74,7 +74,7 @@ TEST(CalibrationProblem, JacobianAgreesWithDifferences) {
     EXPECT_LT((here.jacobian.col(k) - difference).norm(), 1e-3 * difference.norm()) << names[k];
   }
   // And the fitted frames of that, whitened, are what is fitted.
-  const Prediction fitted = problem.Predict(at, true);
+  const ResidualEvaluation fitted = problem.Predict(at, true);
   ASSERT_TRUE(fitted.usable) << fitted.message;
   const Eigen::MatrixXd white = WhitenedRows(here.jacobian, here, {.fitted_only = true});
   EXPECT_LT((fitted.jacobian - white.topRows(fitted.jacobian.rows())).norm(),
@@ -119,7 +119,7 @@ TEST(CalibrationProblem, CountsOnlyMarkersThatAreSeen) {
   WriteBarRecording(folder.Path(), markers);
   const PredictionStudy study = ReadBarStudy(folder.Path());
   const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 1));
-  const Prediction prediction = problem.Predict(problem.Start(), false);
+  const ResidualEvaluation prediction = problem.Predict(problem.Start(), false);
   ASSERT_TRUE(prediction.usable) << prediction.message;
   constexpr Eigen::Index kFitted = 16;  // frames, 0 to 0.15 s
   ASSERT_EQ(prediction.residual.size(), 3 * kMarkers * kFitted);
@@ -140,7 +140,7 @@ TEST(CalibrationProblem, APredictionThatBreaksOffLeavesNothingBehind) {
   liquid[0] = 1;  // Pa
   EXPECT_FALSE(problem.Predict(liquid, false, kWhole, &memory).usable);
   EXPECT_TRUE(memory.correspondences.empty());
-  const Prediction after = problem.Predict(problem.Start(), false, kWhole, &memory);
+  const ResidualEvaluation after = problem.Predict(problem.Start(), false, kWhole, &memory);
   ASSERT_TRUE(after.usable) << after.message;
   EXPECT_EQ(after.residual, problem.Predict(problem.Start(), false).residual);
 }
@@ -317,7 +317,7 @@ TEST(CalibrationProblem, PredictsRecordingsSideBySideAsOneAfterTheOther) {
         "      region: {half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}\n"
         "      release: 0.0437 s\n"}});
   const int threads = ThreadCount();
-  Prediction prediction[2];
+  ResidualEvaluation prediction[2];
   LinearisedMisfit linearised[2];
   std::vector<RecordingMisfit> misfits[2];
   for (int k = 0; k < 2; ++k) {

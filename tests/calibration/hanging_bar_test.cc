@@ -106,7 +106,7 @@ TEST(HangingBar, LeavesTheModulusAsUncertainAsTheDensity) {
   ASSERT_THAT(NamesOf(problem), ElementsAre("young_modulus", "density"));
   EXPECT_EQ(problem.UnitOf(1), "kg/m^3");
 
-  const Prediction at = problem.Predict(problem.Start(), true);
+  const ResidualEvaluation at = problem.Predict(problem.Start(), true);
   ASSERT_TRUE(at.usable) << at.message;
   const Eigen::VectorXd by_modulus = problem.Start()[0] * at.jacobian.col(0);
   const Eigen::VectorXd by_density = problem.Start()[1] * at.jacobian.col(1);
@@ -180,8 +180,8 @@ TEST(HangingBar, MovesAsItWasFittedWhenItIsReadBack) {
 
   const FittedRun opened = OpenRun(folder / "run");
   const CalibrationProblem before(study, opened.mesh), after(opened.study, opened.mesh);
-  const Prediction first = before.Predict(opened.values, false);
-  const Prediction second = after.Predict(opened.values, false);
+  const ResidualEvaluation first = before.Predict(opened.values, false);
+  const ResidualEvaluation second = after.Predict(opened.values, false);
   ASSERT_TRUE(first.usable && second.usable) << first.message << second.message;
   ASSERT_EQ(first.residual.size(), second.residual.size());
   // The same computation. Damping of the fitted density would differ by σ and more in many rows.

@@ -208,7 +208,7 @@ TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
   const double by_gravity = here.jacobian(force.first_row, at.size());
   EXPECT_NEAR(by_gravity, -0.5 * mass, 0.05 * mass);
   // The whitened rows of all frames, in the same order, are what is fitted.
-  const Prediction fitted = problem.Predict(at, true);
+  const ResidualEvaluation fitted = problem.Predict(at, true);
   ASSERT_TRUE(fitted.usable) << fitted.message;
   const Eigen::MatrixXd white =
       WhitenedRows(here.jacobian.leftCols(at.size()), here, {.fitted_only = true});

@@ -100,7 +100,7 @@ TEST_F(MeshLimitOfACoarseBar, IsWhatAFinerMeshIsFittedWith) {
   const double share_of_limit = 1 / refined.ToLimit();
   EXPECT_NEAR(share_of_limit * (limit[0] - Values()[0]), missing, 0.25 * missing);
   EXPECT_LT(estimate.high, of_fine);
-  CountModelErrors(Problem().parameters()[0], limit[0], Errors().deviation[0], &estimate);
+  WidenIntervalByModelErrors(Problem().parameters()[0], limit[0], Errors().deviation[0], &estimate);
   EXPECT_GT(estimate.high, of_fine) << "an interval that counts the mesh";
   EXPECT_LT(estimate.low, of_fine);
 }

@@ -194,6 +194,10 @@ TEST(Config, ReportsThePositionOfAListItem) {
   ExpectInputError([&] { config.FailAtItem("force", 1, "no"); }, "a.yaml:2:3: force[1]: no");
   ExpectInputError([&] { config.FailAtItem("force", 2, "no"); }, "a.yaml:1:8: force: no");
   ExpectInputError([&] { config.FailAtItem("text", 0, "no"); }, "a.yaml:3:7: text: no");
+
+  const Config lists = Config::Parse("names: [a, {b: 1}]\n", "a.yaml");
+  ExpectInputError([&] { lists.Texts("names"); },
+                   "a.yaml:1:12: names[1]: got a mapping; expected a string");
 }
 
 }  // namespace

@@ -93,21 +93,21 @@ TEST(InterruptDeathTest, ASignalIgnoredByTheParentStaysIgnored) {
 
 // The jobs of workers are forked; each waits for signals itself.
 TEST(InterruptDeathTest, StopsTheJobsOfWorkers) {
-  const auto share_out = [] {
+  const auto run_jobs = [] {
     Install();
     std::thread([] {
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
       kill(getpid(), SIGTERM);
     }).detach();
-    const int failed = ShareOut(2, {.workers = 2}, [](size_t) {
+    const bool done = RunInProcesses(2, {.workers = 2}, [](size_t) {
       for (;;) {
         ThrowIfInterrupted();
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
     });
-    std::_Exit(failed != 0 && InterruptRequested() ? 0 : 1);
+    std::_Exit(!done && InterruptRequested() ? 0 : 1);
   };
-  EXPECT_EXIT(share_out(), ::testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(run_jobs(), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

@@ -41,11 +41,11 @@ TEST(Claim, IsExclusiveAndNamesItsHolder) {
 
 TEST(Workers, RunEachJobOnceInAProcessOfItsOwn) {
   const TemporaryFolder folder;
-  const int status = ShareOut(5, {.workers = 2, .threads = 3}, [&](size_t k) {
+  const bool done = RunInProcesses(5, {.workers = 2, .threads = 3}, [&](size_t k) {
     std::ofstream(folder / std::to_string(k), std::ios::app)
         << (ThreadCount() == 3) << " " << getpid() << "\n";
   });
-  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(done);
   for (int k = 0; k < 5; ++k) {
     const std::string said = FileContent(folder / std::to_string(k));
     EXPECT_EQ(said.rfind("1 ", 0), 0u) << said;
@@ -59,7 +59,7 @@ TEST(Workers, ReportACrashAndContinueWithTheOtherJobs) {
   std::map<size_t, std::string> crashed;
   WorkerOptions options;
   options.crashed = [&](size_t k, const std::string& reason) { crashed[k] = reason; };
-  const int status = ShareOut(4, options, [&](size_t k) {
+  const bool done = RunInProcesses(4, options, [&](size_t k) {
     if (k == 0) {
       signal(SIGSEGV, SIG_DFL);  // a sanitizer would end the process in another way
       raise(SIGSEGV);
@@ -68,7 +68,7 @@ TEST(Workers, ReportACrashAndContinueWithTheOtherJobs) {
     if (k == 2) raise(SIGKILL);  // from outside: no mistake of the job
     std::ofstream(folder / "done") << k;
   });
-  EXPECT_EQ(status, 1);
+  EXPECT_FALSE(done);
   EXPECT_THAT(crashed, ElementsAre(Key(0), Key(1)));
   EXPECT_THAT(crashed[0], HasSubstr("signal 11"));
   EXPECT_EQ(FileContent(folder / "done"), "3");

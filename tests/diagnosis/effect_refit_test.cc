@@ -392,7 +392,7 @@ TEST_F(EffectRefitOfACoarseBar, IsFittedAnewBesideOtherNuisances) {
   EXPECT_NEAR(EvidenceOf(moved, white).misfit, before.misfit, 0.02 * before.misfit);
   // Values beyond a bound start there.
   Eigen::VectorXd beyond = refit.values_at_fit;
-  beyond[refit.model.size()] = -1;  // the coefficient, which must not be negative
+  beyond[refit.baseline_values.size()] = -1;  // the coefficient, which must not be negative
   EXPECT_TRUE(RefitFromValues({baseline, none_}, &drag, beyond).message.empty());
 }
 

@@ -80,7 +80,7 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   EXPECT_EQ(extended.recordings.size(), fitted.study.recordings.size());
   EXPECT_EQ(extended.explained_misfit, 100);
   // Where the effect was refitted, the experiment starts from all values of the refit.
-  scored.model = Eigen::VectorXd::Constant(1, 1.1e5);
+  scored.baseline_values = Eigen::VectorXd::Constant(1, 1.1e5);
   const PredictionStudy refitted =
       ReadPredictionStudy(Config::Load(WriteExtendedExperiment(fitted, run, scored)));
   EXPECT_EQ(refitted.effects.front()->Parameters()[0], 1.1e5);

@@ -22,7 +22,7 @@
 #include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
 #include "fem/prescribed_force.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "geometry/embedding.h"
 #include "prediction/prediction_study_reader.h"
 #include "report/verdict_text.h"

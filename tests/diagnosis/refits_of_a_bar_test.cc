@@ -122,12 +122,12 @@ TEST_F(RefitsOfABar, AreDescribedAsTheyAreBesideTheColumnsOfAnotherMotion) {
   const EffectRefit& after = ranked.refits[0];
   const RankedEffect& drag = ranked.effects[0];
   ASSERT_TRUE(drag.HasUsableRefit()) << drag.refit_message;
-  EXPECT_LT(drag.model[0], before.model[0] - 0.5 * push);
-  EXPECT_GT(drag.model[0], before.model[0] - 2 * push);
-  EXPECT_NEAR(after.values_at_fit[0], drag.model[0], 0.5 * push);
-  EXPECT_EQ(drag.values, after.effect);
+  EXPECT_LT(drag.baseline_values[0], before.baseline_values[0] - 0.5 * push);
+  EXPECT_GT(drag.baseline_values[0], before.baseline_values[0] - 2 * push);
+  EXPECT_NEAR(after.values_at_fit[0], drag.baseline_values[0], 0.5 * push);
+  EXPECT_EQ(drag.values, after.effect_values);
   EXPECT_EQ(drag.errors.without_nuisances, after.errors.without_nuisances);
-  EXPECT_EQ(drag.sizes.front().value, after.calibration.parameters[drag.model.size()]);
+  EXPECT_EQ(drag.sizes.front().value, after.calibration.parameters[drag.baseline_values.size()]);
 }
 
 TEST_F(RefitsOfABar, GiveWayToABetterOneAsAWhole) {

@@ -63,7 +63,7 @@ TEST(ScanPrediction, ARefitTakesAwayWhatANuisanceExplains) {
   const EffectRefit refit = Refit({{problem, start, misfit, &progress}, all_of_it}, nullptr);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   EXPECT_LT(refit.calibration.rms, 1);
-  EXPECT_NEAR(refit.amounts[0], -1, 0.05);
+  EXPECT_NEAR(refit.nuisance_amounts[0], -1, 0.05);
 }
 
 TEST(ScanPrediction, RecoversWhatWasScanned) {
@@ -172,7 +172,7 @@ TEST(ScanPrediction, GoesTogetherWithMarkers) {
                        "[0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}\n      release: 0.0437 s\n"},
                       {"    fit_until: 0.1501 s\n", "    fit_until: 0.1001 s\n"}});
   const CalibrationProblem problem(study, BarMesh({7, 2, 2}, 2));
-  const Prediction start = problem.Predict(problem.Start(), false);
+  const ResidualEvaluation start = problem.Predict(problem.Start(), false);
   ASSERT_TRUE(start.usable) << start.message;
   EXPECT_EQ(start.residual.size(), 6 * 150 + 11 * 3 * kMarkers);  // frames to 0.1 s of each
   const Calibration fit = FitOf(problem);

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "core/random_bits.h"
 #include "diagnosis/decision_input.h"
 #include "diagnosis/hypothesis_space.h"
-#include "scan/random_bits.h"
 
 namespace lacuna {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "effects/catalogue.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/check_effect.h"
 #include "support/strained_body.h"
 
@@ -134,7 +134,6 @@ TEST(ElastoplasticBranch, KeepsABentBarBent) {
         load * Eigen::Vector3d(0, 0, -1).replicate(body->NodeCount(), 1) / body->NodeCount();
     const StepSummary summary = stepper.Equilibrium(force, &history);
     EXPECT_TRUE(summary.IsUsable()) << summary.message;
-    EXPECT_EQ(summary.load_increments, 0);
     EXPECT_LE(summary.iterations, 15);
     return body->mesh.nodes(2, tip) - history.position[3 * tip + 2];
   };

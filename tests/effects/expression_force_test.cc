@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "effects/catalogue.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/box_mesh.h"
 #include "support/check_effect.h"
 

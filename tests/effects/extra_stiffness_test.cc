@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "effects/catalogue.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/box_mesh.h"
 #include "support/check_effect.h"
 #include "support/one_element.h"

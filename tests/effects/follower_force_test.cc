@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "effects/catalogue.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/box_mesh.h"
 #include "support/check_effect.h"
 
@@ -123,6 +123,55 @@ TEST(FollowerForce, KeepsItsTorqueAsTheBarRotates) {
   EXPECT_GT(expected, 0.6 * std::numbers::pi);
   // The quadrature points represent the centre of the force to within 1 % of the lever.
   EXPECT_NEAR(angle, expected, 0.01 * expected);
+}
+
+// The rotation of the loaded end of an elastica of length L, clamped at the other, under a force F
+// that stays perpendicular to it there. With s from the loaded end and φ the rotation relative to
+// it, EI φ'' = F cos φ, φ(0) = φ'(0) = 0 (Bolotin, Nonconservative Problems, 1963).
+double FollowedRotation(double force_over_stiffness, double length) {
+  constexpr int kSteps = 2000;
+  const double h = length / kSteps;
+  double angle = 0, curvature = 0;
+  for (int k = 0; k < kSteps; ++k) {  // the midpoint rule
+    const double middle = angle + 0.5 * h * curvature;
+    angle += h * (curvature + 0.5 * h * force_over_stiffness * std::cos(angle));
+    curvature += h * force_over_stiffness * std::cos(middle);
+  }
+  return angle;
+}
+
+// The force does work on a closed path, and its tangent is far from symmetric at such a rotation.
+TEST(FollowerForce, HoldsABeamThatIsBentByMoreThanARightAngle) {
+  constexpr double kModulus = 1e6, kSide = 5e-3, kLength = 0.095;
+  const double stiffness = kModulus * std::pow(kSide, 4) / 12;
+  const double force = 4 * stiffness / (kLength * kLength);
+  const auto body = std::make_shared<Body>(MakeBody(
+      BoxMesh({0, -kSide / 2, -kSide / 2}, {0.1, kSide / 2, kSide / 2}, {20, 1, 1}, 2), 1000));
+  const Model model{
+      body,
+      {MakeEffect("corotational", {{"young_modulus", kModulus}, {"poisson_ratio", 0.3}}),
+       MakeEffect("follower_force", {{"force_x", 0},
+                                     {"force_y", force},
+                                     {"force_z", 0},
+                                     {"centre_x", kLength},
+                                     {"centre_y", 0},
+                                     {"centre_z", 0},
+                                     {"radius", 0.002}})},
+      {{NodesWhere(body->mesh, [](const Eigen::Vector3d& X) { return X.x() < 1e-9; }), {}}}};
+  MotionHistory history = RestHistory(model);
+  const StepSummary summary = Stepper(model, {}).Equilibrium({}, &history);
+  ASSERT_TRUE(summary.IsUsable()) << summary.message;
+  const auto centre_at = [&](double x) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    const Eigen::VectorXi nodes = NodesWhere(
+        body->mesh, [&](const Eigen::Vector3d& X) { return std::abs(X.x() - x) < 1e-9; });
+    for (const int node : nodes) sum += history.position.segment<3>(3 * node);
+    return Eigen::Vector3d(sum / static_cast<double>(nodes.size()));
+  };
+  const Eigen::Vector3d tangent = centre_at(0.1) - centre_at(0.095);
+  const double expected = FollowedRotation(force / stiffness, kLength);
+  EXPECT_GT(expected, 0.5 * std::numbers::pi);
+  EXPECT_NEAR(std::atan2(tangent.y(), tangent.x()), expected, 0.03 * expected);
 }
 
 TEST(FollowerForce, IsReadFromYaml) {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "effects/catalogue.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/strained_body.h"
 
 namespace lacuna {

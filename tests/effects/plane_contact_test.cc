@@ -10,7 +10,7 @@
 #include "effects/contact_points.h"
 #include "fem/nodal_recovery.h"
 #include "fem/prescribed_force.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/box_mesh.h"
 #include "support/check_effect.h"
 

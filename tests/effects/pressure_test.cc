@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "effects/catalogue.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/box_mesh.h"
 #include "support/check_effect.h"
 

@@ -7,7 +7,7 @@
 #include "effects/catalogue.h"
 #include "effects/effect_text.h"
 #include "fem/nodal_recovery.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/box_mesh.h"
 #include "support/check_effect.h"
 #include "support/one_element.h"

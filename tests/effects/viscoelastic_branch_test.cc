@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "effects/catalogue.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/check_effect.h"
 #include "support/strained_body.h"
 

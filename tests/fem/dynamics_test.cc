@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "effects/catalogue.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/box_mesh.h"
 
 namespace lacuna {

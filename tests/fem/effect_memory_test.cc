@@ -37,5 +37,23 @@ TEST(EffectMemory, AdvancesWithTheInertiaOfTheMotion) {
   }
 }
 
+// Without them its sensitivities would be wrong in silence.
+TEST(Effect, WithInternalVariablesMustDefineTheirDerivatives) {
+  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.1, 0.1, 0.1}, {1, 1, 1}), 1000);
+  const Eigen::VectorXd rest = body.mesh.nodes.reshaped(), still = 0 * rest;
+  const Eigen::VectorXd state = Eigen::VectorXd::Zero(1);
+  const Kinematics at{
+      .body = body, .position = rest, .velocity = still, .acceleration = still, .state = state};
+  const InertiaRecorder recorder;
+  Eigen::MatrixXd changes = Eigen::MatrixXd::Zero(1, 1);
+  Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(rest.size(), 1);
+  EXPECT_DEATH(recorder.AddStateDerivatives(at, changes, nodal),
+               "inertia_recorder.*AddStateDerivatives");
+  EXPECT_DEATH(recorder.AdvanceStateDerivatives(at, nodal, changes),
+               "inertia_recorder.*AdvanceStateDerivatives");
+  EXPECT_DEATH(recorder.AddStateByParameter(at, 0, changes.col(0)),
+               "inertia_recorder.*AddStateByParameter");
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "fem/cloneable_effect.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/box_mesh.h"
 
 namespace lacuna {

@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "effects/catalogue.h"
 #include "fem/inverted_element.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "geometry/shape_functions.h"
 #include "support/box_mesh.h"
 

@@ -37,7 +37,7 @@ TEST_P(LinearSolverMethod, AgreesWithADenseFactorisationAndIsZeroAtFixedNodes) {
   LinearSolverOptions options;
   options.method = GetParam();
   options.relative_tolerance = 1e-12;
-  LinearSolver solver(lattice.pattern, lattice.fixed, options);
+  LinearSolver solver(lattice.pattern, HoldNodes(lattice.fixed), options);
   const Eigen::VectorXd b = RandomVector(3 * lattice.Nodes());
   // The later matrices differ from the first one, so that the kept factor is a preconditioner only.
   for (const double angle : {0.0, 0.1, 0.2}) {
@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(Each, LinearSolverMethod,
 
 TEST(LinearSolver, KeepsItsFactorForSimilarMatricesAndRenewsItForOthers) {
   const Lattice lattice(14);
-  LinearSolver solver(lattice.pattern, lattice.fixed, {});
+  LinearSolver solver(lattice.pattern, HoldNodes(lattice.fixed), {});
   const Eigen::VectorXd b = RandomVector(3 * lattice.Nodes());
   Eigen::VectorXd x;
   EXPECT_TRUE(solver.Solve(lattice.Stiffness(0, 0.01), b, &x).factorised);
@@ -94,7 +94,7 @@ TEST(LinearSolver, RotatesItsFactorWithTheBody) {
   const std::vector<Eigen::Matrix3d> after(
       lattice.Nodes(), Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix());
   const Eigen::VectorXd b = RandomVector(3 * lattice.Nodes());
-  LinearSolver solver(lattice.pattern, lattice.fixed, {});
+  LinearSolver solver(lattice.pattern, HoldNodes(lattice.fixed), {});
   Eigen::VectorXd x;
   const int when_new = solver.Solve(lattice.Stiffness(0, 0.01), b, &x, &before).iterations;
   // The lattice has rotated as a whole, so the rotated factor is as good as a new one.
@@ -103,14 +103,14 @@ TEST(LinearSolver, RotatesItsFactorWithTheBody) {
   EXPECT_FALSE(rotated.factorised);
   EXPECT_LE(rotated.iterations, when_new + 1);
   // A solver that is not given the rotation renews its factor.
-  LinearSolver without_rotations(lattice.pattern, lattice.fixed, {});
+  LinearSolver without_rotations(lattice.pattern, HoldNodes(lattice.fixed), {});
   without_rotations.Solve(lattice.Stiffness(0, 0.01), b, &x);
   EXPECT_TRUE(without_rotations.Solve(lattice.Stiffness(angle, 0.01), b, &x).factorised);
 }
 
 TEST(LinearSolver, StartsFromEarlierSolutionsIfTheyHelp) {
   const Lattice lattice(10);
-  LinearSolver solver(lattice.pattern, lattice.fixed, {});
+  LinearSolver solver(lattice.pattern, HoldNodes(lattice.fixed), {});
   const BlockMatrix A = lattice.Stiffness(0, 0.01);
   const Eigen::VectorXd b = RandomVector(3 * lattice.Nodes());
   Eigen::VectorXd x, doubled;
@@ -124,7 +124,7 @@ TEST(LinearSolver, FallsBackOnDoublePrecisionForIllConditionedMatrices) {
   // Without fixed nodes and with a tiny mass term, the condition number is about 1e10.
   const Lattice lattice(5);
   const std::vector<char> free(lattice.Nodes(), 0);
-  LinearSolver solver(lattice.pattern, free, {.relative_tolerance = 1e-8});
+  LinearSolver solver(lattice.pattern, HoldNodes(free), {.relative_tolerance = 1e-8});
   const BlockMatrix A = lattice.Stiffness(0, 1e-9);
   Eigen::VectorXd b = RandomVector(3 * lattice.Nodes()), x, product;
   const LinearSolveSummary summary = solver.Solve(A, b, &x);
@@ -139,7 +139,7 @@ TEST(LinearSolver, DirectFactorisesEachMatrix) {
   const Lattice lattice(4);
   LinearSolverOptions options;
   options.method = LinearSolverOptions::Method::kDirect;
-  LinearSolver solver(lattice.pattern, lattice.fixed, options);
+  LinearSolver solver(lattice.pattern, HoldNodes(lattice.fixed), options);
   const Eigen::VectorXd b = RandomVector(3 * lattice.Nodes());
   Eigen::VectorXd x;
   for (int k = 1; k <= 3; ++k) {
@@ -151,7 +151,7 @@ TEST(LinearSolver, DirectFactorisesEachMatrix) {
 TEST(LinearSolver, ReportsAMatrixThatIsNotPositiveDefinite) {
   const Lattice lattice(5);
   const Eigen::VectorXd b = RandomVector(3 * lattice.Nodes());
-  LinearSolver solver(lattice.pattern, lattice.fixed, {});
+  LinearSolver solver(lattice.pattern, HoldNodes(lattice.fixed), {});
   Eigen::VectorXd x;
   const auto expect_refusal = [&] {
     const LinearSolveSummary summary = solver.Solve(lattice.Stiffness(0, -3), b, &x);
@@ -170,7 +170,7 @@ TEST(LinearSolver, ReportsAMatrixThatIsNotPositiveDefinite) {
 
 TEST(LinearSolver, ReportsNotANumber) {
   const Lattice lattice(3);
-  LinearSolver solver(lattice.pattern, lattice.fixed, {});
+  LinearSolver solver(lattice.pattern, HoldNodes(lattice.fixed), {});
   Eigen::VectorXd b = RandomVector(3 * lattice.Nodes()), x;
   BlockMatrix A = lattice.Stiffness(0, 1);
   b[b.size() - 1] = std::nan("");
@@ -183,11 +183,11 @@ TEST(LinearSolver, ReportsNotANumber) {
 TEST(LinearSolver, AcceptsAZeroRightHandSideAndABodyWithoutFreeNodes) {
   const Lattice lattice(3);
   Eigen::VectorXd x;
-  LinearSolver solver(lattice.pattern, lattice.fixed, {});
+  LinearSolver solver(lattice.pattern, HoldNodes(lattice.fixed), {});
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(3 * lattice.Nodes());
   EXPECT_TRUE(solver.Solve(lattice.Stiffness(0, 1), zero, &x).IsUsable());
   EXPECT_EQ(x, zero);
-  LinearSolver held(lattice.pattern, std::vector<char>(lattice.Nodes(), 1), {});
+  LinearSolver held(lattice.pattern, HoldNodes(std::vector<char>(lattice.Nodes(), 1)), {});
   EXPECT_TRUE(held.Solve(lattice.Stiffness(0, 1), RandomVector(zero.size()), &x).IsUsable());
   EXPECT_EQ(x, zero);
 }
@@ -198,7 +198,7 @@ TEST(LinearSolver, GivesTheSameBitsOnOneAndTwoThreadsAndOnARepeatedRun) {
   const auto solutions = [&](int threads) {
     const int before = ThreadCount();
     SetThreadCount(threads);
-    LinearSolver solver(lattice.pattern, lattice.fixed, {});
+    LinearSolver solver(lattice.pattern, HoldNodes(lattice.fixed), {});
     Eigen::MatrixXd all(b.size(), 4);
     for (int k = 0; k < 4; ++k) {
       Eigen::VectorXd x;

@@ -13,7 +13,7 @@
 #include "fem/linear_solver.h"
 #include "fem/prediction.h"
 #include "fem/prescribed_force.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/box_mesh.h"
 #include "support/dense_matrix.h"
 #include "support/lattice.h"

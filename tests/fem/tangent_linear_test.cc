@@ -10,7 +10,7 @@
 
 #include "effects/catalogue.h"
 #include "fem/prescribed_force.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "support/box_mesh.h"
 
 namespace lacuna {

@@ -5,11 +5,11 @@
 
 #include "core/parallel.h"
 #include "effects/catalogue.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "fit/coefficient_fit.h"
 #include "fit/position_fit.h"
 #include "fit/step_force_fitter.h"
-#include "geometry/surface_tracks.h"
+#include "geometry/embedding.h"
 #include "support/box_mesh.h"
 
 namespace lacuna {
@@ -290,16 +290,39 @@ TEST(ForceFit, FollowsAFarMotionOfASoftBodyInOneStep) {
   const MotionHistory rest = RestHistory(bar.model);
   const StepEquation equation(bar.model, rest, TimeScheme::kQuasiStatic, 0);
   const ForceModel forces = NodalForces(*bar.body, bar.tip, 0.5);
-  const SurfaceTracks tracks = TrackOnSurface(bar.body->boundary, before);
-  const Observations seen =
-      ObserveMarkers(bar.body->boundary, tracks.at_rest, after - tracks.offset, kNoise);
+  const Embedding places = Embed(bar.body->mesh, before);
+  const Observations seen = ObserveMarkers(bar.body->mesh, places, after, kNoise);
   const ForceFit fit = StepForceFitter(bar.model, equation, forces, rest.position).Fit(seen);
   ASSERT_TRUE(fit.IsUsable()) << fit.message;
-  const Eigen::Matrix3Xd found = PointsAt(tracks, bar.body->boundary, AsPoints(fit.position));
+  const Eigen::Matrix3Xd found = PointsAt(places, bar.body->mesh, AsPoints(fit.position));
   const double farthest = (after - before).colwise().norm().maxCoeff();
   EXPECT_GT(farthest, 0.07);
   EXPECT_LT((found - after).colwise().norm().mean(), 0.01 * farthest);
   EXPECT_LE(fit.factorisations, 40);
+}
+
+// The prior alone determines the force then, and its residual is none of an observation.
+TEST(ForceFit, HasNoResidualOfObservationsWithoutAny) {
+  const Bar bar = MakeBar({3, 1, 1}, 1);
+  const MotionHistory rest = RestHistory(bar.model);
+  const StepEquation equation(bar.model, rest, TimeScheme::kQuasiStatic, 0);
+  const ForceModel forces = FootprintForce(*bar.body, bar.tip, 0.01);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(3);
+  const Eigen::VectorXd no_force = Eigen::VectorXd::Zero(rest.position.size());
+  const ForceFitPrior prior{no_force, Eigen::Vector3d::UnitX()};
+  const Observations nothing =
+      ObserveScan(bar.body->boundary, bar.body->mesh.nodes, {}, 1e-4, 0.01);
+  ASSERT_EQ(nothing.Count(), 0);
+  const ForceFit eliminated =
+      CoefficientFitter(bar.model, equation, forces, ControlForces(bar.model, forces),
+                        rest.position, zero)
+          .Fit(nothing, prior, {});
+  ASSERT_TRUE(eliminated.IsUsable()) << eliminated.message;
+  EXPECT_NEAR(eliminated.coefficients[0], 1, 1e-2);
+  EXPECT_EQ(eliminated.weighted_rms, 0);
+  const ForceFit sparse = FitPositions(bar.model, equation, forces, nothing,
+                                       {rest.position, zero, no_force}, prior, {});
+  EXPECT_EQ(sparse.weighted_rms, 0);
 }
 
 TEST(ForceFit, ReportsMissingUnknownsAndObservations) {

@@ -46,6 +46,18 @@ TEST(Embedding, FollowsAQuadraticMotionWithQuadraticElements) {
   EXPECT_LT((DeformationGradientAt(embedding, 0, mesh, moved) - gradient).norm(), 1e-12);
 }
 
+TEST(Embedding, APointThatIsNotFiniteHasNoLocation) {
+  const TetMesh mesh =
+      BoxMesh(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones(), std::array<int, 3>{2, 2, 2});
+  Eigen::Matrix3Xd points = Eigen::Vector3d(0.3, 0.61, 0.17).replicate(1, 2);
+  points(1, 0) = std::nan("");
+  const Embedding embedding = Embed(mesh, points);
+  EXPECT_EQ(embedding.tet[0], -1);
+  const Eigen::Matrix3Xd found = PointsAt(embedding, mesh, mesh.nodes);
+  EXPECT_TRUE(found.col(0).array().isNaN().all());
+  EXPECT_LT((found.col(1) - points.col(1)).norm(), 1e-12);
+}
+
 // A quarter of a thick-walled tube, whose elements have curved edges.
 TetMesh Tube() {
   TetMesh mesh =
@@ -127,7 +139,9 @@ TEST(Embedding, FindsEveryInteriorPointOfAGradedMesh) {
 TEST(Embedding, ReportsHowFarOutsideAPointIs) {
   const TetMesh mesh =
       BoxMesh(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones(), std::array<int, 3>{1, 1, 1});
-  EXPECT_GT(Embed(mesh, Eigen::Vector3d(0.5, 0.4, 1.2)).outside[0], 0.1);
+  // In the tetrahedron that rises along z first, then x, then y, the barycentric coordinates are
+  // 1 − z, z − x, x − y and y.
+  EXPECT_NEAR(Embed(mesh, Eigen::Vector3d(0.5, 0.4, 1.2)).outside[0], 0.2, 1e-14);
 }
 
 }  // namespace

@@ -56,9 +56,12 @@ TEST(FacePoints, LieInTheTrianglesOfALinearMesh) {
   const TriMesh surface = BoundaryAt(warped.boundary, warped.nodes);
   const Eigen::Matrix3Xd normals = TriangleNormals(surface);
   for (int t = 0; t < surface.triangles.cols(); ++t) {
-    const FacePoint point = PlaceOnFace(warped.boundary, t, {0.2, 0.5, 0.3});
+    const Eigen::Vector3d at(0.2, 0.5, 0.3);
+    const FacePoint point = PlaceOnFace(warped.boundary, t, at);
     EXPECT_EQ(point.count, 3);
     const FaceGeometry now = Evaluate(point, warped.boundary, warped.nodes);
+    const Eigen::Matrix3d corners = surface.vertices(Eigen::all, surface.triangles.col(t));
+    EXPECT_LT((now.position - corners * at).norm(), 1e-14);
     EXPECT_LT((now.normal - normals.col(t)).norm(), 1e-13);
   }
 }

@@ -111,6 +111,22 @@ TEST(MendSurface, TurnsTrianglesLikeTheirNeighboursAndClosedSurfacesOutward) {
   EXPECT_EQ(MendSurface(mixed).mesh.triangles, sheet.triangles);
 }
 
+// Far from the origin the rounding of coordinates decides about the sign of a small volume.
+TEST(MendSurface, AgreesWithCheckSurfaceAboutWhatIsInsideOut) {
+  constexpr double kFar = 0x1p20;  // neighbouring doubles differ by 2^-32 there
+  for (const bool is_thick : {false, true}) {
+    TriMesh slab = BoxSurface({1, 1, is_thick ? 0x1p-24 : 0x1p-30}, {1, 1, 1});
+    slab.vertices.row(2).array() += kFar;
+    slab.triangles.row(1).swap(slab.triangles.row(2));
+    const SurfaceReport given = CheckSurface(slab, false);
+    EXPECT_EQ(given.flat_components.size(), is_thick ? 0u : 1u);
+    EXPECT_EQ(given.inside_out_components.size(), is_thick ? 1u : 0u);
+    const MendedSurface mended = MendSurface(slab);
+    EXPECT_EQ(mended.notes.size(), is_thick ? 1u : 0u);
+    EXPECT_TRUE(CheckSurface(mended.mesh, false).inside_out_components.empty());
+  }
+}
+
 // A wall that was turned would make two bodies of one with a cavity.
 TEST(MendSurface, LeavesTheWallOfACavityAndOneSidedSurfaces) {
   TriMesh wall = Icosphere(0.3, 1);

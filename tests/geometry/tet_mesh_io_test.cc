@@ -1,4 +1,4 @@
-// Hostile files of tetrahedral meshes; mesh_io_test.cc has the sound ones.
+// Hostile files of tetrahedral meshes; tet_mesh_formats_test.cc has the sound ones.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

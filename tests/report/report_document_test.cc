@@ -177,6 +177,53 @@ TEST(ReportDocument, SeriesOfPointsAreExactWhereTheNoiseIsSmall) {
   EXPECT_NEAR(Unpack(precise).values(5, 7), 0.007, 4e-9);
 }
 
+TEST(ReportDocument, PointsWithNoiseOfTheirOwnHaveTheirSigmaInEachFrame) {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::vector<double>& sigmas) {
+    WriteFit(folder / "bar", {.sigmas = sigmas});
+    return ReportDocument({folder / "bar"}).at("runs").at(0);
+  };
+  const json own = run({1e-4, 1e-5});
+  const json& scene = own.at("models").at(0).at("scenes").at(0);
+  const UnpackedArray shown = Unpack(scene.at("points").at("sigmas"));
+  EXPECT_EQ(shown.shape, (std::vector<int>{3, 2}));  // the frames of the motion
+  const UnpackedArray all = Unpack(scene.at("points_series").at("sigmas"));
+  EXPECT_EQ(all.shape, (std::vector<int>{40, 2}));
+  // Steps of the packed numbers are at most a thousandth of the smallest σ.
+  EXPECT_NEAR(shown.values(0, 2), 1e-4, 1e-8);
+  EXPECT_NEAR(shown.values(1, 2), 1e-5, 1e-8);
+  EXPECT_NEAR(all.values(1, 39), 1e-5, 1e-8);
+  // What noise gives to the rms length of a frame: in frame 3 the second marker was not seen.
+  const json& noise = scene.at("series").at("noise_m");
+  EXPECT_EQ(noise.size(), 40u);
+  EXPECT_NEAR(noise.at(2).get<double>(), std::sqrt(3.0 * (1 + 0.01) / 2) * 1e-4, 1e-12);
+  EXPECT_NEAR(noise.at(3).get<double>(), std::sqrt(3.0) * 1e-4, 1e-12);
+  EXPECT_TRUE(std::isnan(all.values(1, 3)));
+  // 16-bit steps of 0.9 µm are too coarse for the second marker.
+  EXPECT_EQ(scene.at("points_series").at("measured").at("type"), "float32");
+  EXPECT_TRUE(own.at("noise").is_null());
+
+  // The same noise for all points is that of the fit, and the page stays as it is.
+  const json equal = run({1e-4, 1e-4});
+  const json& other = equal.at("models").at(0).at("scenes").at(0);
+  EXPECT_FALSE(other.at("points").contains("sigmas"));
+  EXPECT_FALSE(other.at("points_series").contains("sigmas"));
+  EXPECT_FALSE(other.at("series").contains("noise_m"));
+  EXPECT_NEAR(equal.at("noise").get<double>(), std::sqrt(3.0) * 1e-4, 1e-12);
+}
+
+// A patch is the mean of some number of scanned points, which its σ follows.
+TEST(ReportDocument, NoiseOfPatchesIsAlongTheirNormals) {
+  const TemporaryFolder folder;
+  CalibrationRecord record = SmallLedger().models[0].record;
+  record.recordings[0].scan = FittedScan{Eigen::Matrix3Xd::Zero(3, 2), 2e-5, 1};
+  WriteSmallFit(folder / "bar", {.sigmas = {1e-5, 3e-5}}, record);
+  const json scenes =
+      ReportDocument({folder / "bar"}).at("runs").at(0).at("models").at(0).at("scenes");
+  EXPECT_NEAR(scenes.at(0).at("series").at("noise_m").at(0).get<double>(), std::sqrt(5.0) * 1e-5,
+              1e-12);
+}
+
 TEST(ReportDocument, CorrelationsOfAllPairsOfPointsAreLeftOut) {
   const TemporaryFolder folder;
   WriteSmallChain(folder.Path());

@@ -8,7 +8,6 @@
 
 #include "core/parallel.h"
 #include "geometry/nearest.h"
-#include "scan/random_bits.h"
 #include "scan/recording.h"
 #include "scan/recording_writer.h"
 #include "scan/scan_writer.h"
@@ -35,22 +34,6 @@ CameraRing RingAround(const Eigen::Vector3d& center) {
   ring.width = 160;
   ring.height = 120;
   return ring;
-}
-
-TEST(RandomBits, AreUniformNormalAndFreeOfCorrelation) {
-  constexpr int kCount = 100'000;
-  double sum = 0, square = 0, lagged = 0, last = 0, uniform = 0;
-  for (uint64_t i = 0; i < kCount; ++i) {
-    const double x = Normal(RandomBits({7, 0, 0, i, 1}));
-    sum += x, square += x * x, lagged += x * last;
-    uniform += Uniform(RandomBits({7, 0, 0, i, 2}));
-    last = x;
-  }
-  const double tolerance = 4 / std::sqrt(kCount);  // four standard errors
-  EXPECT_NEAR(sum / kCount, 0, tolerance);
-  EXPECT_NEAR(square / kCount, 1, tolerance * M_SQRT2);
-  EXPECT_NEAR(lagged / kCount, 0, tolerance);
-  EXPECT_NEAR(uniform / kCount, 0.5, tolerance / std::sqrt(12));
 }
 
 TEST(VirtualScanner, SeesTheSurfaceExactlyWithoutNoise) {

@@ -119,7 +119,7 @@ TEST(Cobyla, ReachesTheKnownMinimaInBothModes) {
   }
 }
 
-// Medians are compared because single counts vary by half with the start.
+// The geometric mean of the ratios is tested because a single ratio varies by half with the start.
 TEST(Cobyla, ModernRulesNeedFewerEvaluationsThanPowells) {
   double log_ratio = 0;
   int count = 0;
@@ -305,8 +305,8 @@ TEST(Cobyla, ModernRulesTryTheLastShortStep) {
   EXPECT_GT(tried, 3);
 }
 
-// The median of ten noises and two shares of failures; the box is 1 wide and the start is at 0.13.
-// Without restarts the same searches end five times as far from the minimum.
+// The median over eleven noises, for two shares of failures; the box is 1 wide and the start is at
+// 0.13. Without restarts the same searches end farther from the minimum.
 TEST(Cobyla, RestartsDescendASteppedValley) {
   for (const double failing : {0.0, 0.03}) {
     std::vector<double> with, without;

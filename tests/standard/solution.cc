@@ -18,7 +18,7 @@
 #include "fem/natural_modes.h"
 #include "fem/nodal_recovery.h"
 #include "fem/prescribed_force.h"
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 #include "geometry/shape_functions.h"
 
 namespace lacuna {

@@ -7,11 +7,21 @@
 #include <Eigen/Geometry>
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "fem/block_matrix.h"
+#include "fem/held_components.h"
 
 namespace lacuna {
+
+// Holds the nodes whose flag is set along all axes, and leaves the others free.
+inline HeldComponents HoldNodes(const std::vector<char>& whole) {
+  std::vector<AxisSet> axes(whole.size());
+  for (size_t i = 0; i < whole.size(); ++i)
+    if (whole[i]) axes[i] = AxisSet::All();
+  return HeldComponents(std::move(axes));
+}
 
 // A block of n × n × n nodes, each coupled by springs to its neighbours along the lattice's edges
 // and diagonals: a small stand-in for a stiffness matrix, with one end held.

@@ -21,6 +21,9 @@ Model BarModel(const HeldBarTruth& truth, bool gravity, double clamp) {
       MakeEffect("neo_hookean", {{"young_modulus", truth.young_modulus}, {"poisson_ratio", 0.4}}),
       MakeEffect("mass_damping", {{"alpha", truth.alpha}})};
   if (gravity) model.effects.push_back(MakeEffect("gravity", {{"acceleration_z", -9.80665}}));
+  if (truth.body_force)
+    model.effects.push_back(std::make_shared<PrescribedForce>(
+        model.body->node_mass / model.body->node_mass.sum(), truth.body_force));
   model.grips = {
       {NodesWhere(model.body->mesh, [clamp](const Eigen::Vector3d& at) { return at.x() < clamp; }),
        {}}};

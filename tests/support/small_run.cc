@@ -1,5 +1,6 @@
 #include "support/small_run.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
@@ -16,27 +17,31 @@ constexpr int kFittedFrames = 30;
 constexpr double kSpacing = 0.01;  // s
 
 // Two markers that swing, 0.3 mm beside the prediction; the second was not seen in frame 3.
-CsvTable Misfit(const CalibrationRecord& record, int held_out) {
-  const char* names[] = {"recording",      "frame",          "time_s",        "marker",
-                         "fitted",         "measured_x_m",   "measured_y_m",  "measured_z_m",
-                         "difference_x_m", "difference_y_m", "difference_z_m"};
-  std::vector<std::vector<double>> columns(std::size(names));
+CsvTable Misfit(const CalibrationRecord& record, const SmallRun& run) {
+  std::vector<const char*> names{"recording",      "frame",         "time_s",
+                                 "marker",         "fitted",        "measured_x_m",
+                                 "measured_y_m",   "measured_z_m",  "difference_x_m",
+                                 "difference_y_m", "difference_z_m"};
+  if (!run.sigmas.empty()) names.push_back("sigma_m");
+  std::vector<std::vector<double>> columns(names.size());
   for (size_t r = 0; r < record.recordings.size(); ++r)
-    for (int f = 0; f < kFittedFrames + held_out; ++f)
+    for (int f = 0; f < kFittedFrames + run.held_out_frames; ++f)
       for (int m = 0; m < 2; ++m) {
         const double fitted = record.recordings[r].fitted && f < kFittedFrames ? 1 : 0;
         const double gap = m == 1 && f == 3 ? kNotMeasured : 3e-4;
-        const double row[] = {static_cast<double>(r),
-                              static_cast<double>(f),
-                              kSpacing * f,
-                              static_cast<double>(m),
-                              fitted,
-                              0.03 * (m + 1),
-                              0.002 * m,
-                              0.001 * f,
-                              0,
-                              0,
-                              gap};
+        std::vector<double> row{static_cast<double>(r),
+                                static_cast<double>(f),
+                                kSpacing * f,
+                                static_cast<double>(m),
+                                fitted,
+                                0.03 * (m + 1),
+                                0.002 * m,
+                                0.001 * f,
+                                0,
+                                0,
+                                gap};
+        if (!run.sigmas.empty())
+          row.push_back(std::isnan(gap) ? kNotMeasured : run.sigmas[static_cast<size_t>(m)]);
         for (size_t k = 0; k < columns.size(); ++k) columns[k].push_back(row[k]);
       }
   CsvTable table;
@@ -78,7 +83,7 @@ void WriteSmallFit(const std::filesystem::path& folder, const SmallRun& run,
   directory.Begin(configuration, {{"a/markers.csv", run.content}}, 0);
   directory.Store("calibration", "key", [&](const std::filesystem::path& stage) {
     WriteCalibrationFile(record, stage / "calibration.json");
-    SaveCsv(Misfit(record, run.held_out_frames), stage / "misfit.csv");
+    SaveCsv(Misfit(record, run), stage / "misfit.csv");
   });
   directory.Finish();
   MakeFolder(MotionFile(folder, 0).parent_path());

@@ -19,6 +19,7 @@ struct SmallRun {
   std::string marker = "tip";             // the name of the second marker
   std::string content = "1f2e3d";         // hash of the recording
   std::vector<std::string> effects = {};  // of the model, in the configuration
+  std::vector<double> sigmas = {};        // m, noise of each marker; empty: the table has none
 };
 
 // Writes manifest.json, calibration and its misfit, and the motion of SmallMotion().

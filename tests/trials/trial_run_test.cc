@@ -96,7 +96,7 @@ TEST(RunFollowUps, FollowsOpenCasesAndKeepsWhyOneFailed) {
   keep("closed", TrialGroup::kOneEffect, Verdict::kMissing);
   keep("open", TrialGroup::kOneEffect, Verdict::kAdequate);
   keep("removed", TrialGroup::kRemoved, Verdict::kAdequate);
-  EXPECT_EQ(RunFollowUps(folder.Path(), 2), 0);
+  EXPECT_TRUE(RunFollowUps(folder.Path(), 2));
   EXPECT_FALSE(LoadFollowUps(folder / "open").has_value());
   EXPECT_THAT(FileContent(folder / "open/follow_up" / kFailureFile), HasSubstr(kExperimentFile));
   EXPECT_FALSE(LoadFollowUps(folder / "closed").has_value());

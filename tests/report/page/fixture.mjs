@@ -430,6 +430,22 @@ function scannedScene() {
            points: { names: [], is_scan: true, measured: scene.points.measured, model: null, residual: null, sigma: null } };
 }
 
+// Every second marker has four times the noise of the others, and one of them becomes worse in later frames.
+export const SIGMAS = (point, frame) => (point % 2 ? 4 : 1) * (point === 5 && frame >= 30 ? 2 : 1) * NOISE;
+export function ownNoiseReport() {
+  const data = fullReport();
+  data.runs[0].noise = null;
+  for (const model of data.runs[0].models) {
+    for (const { times, points, series, points_series } of model.scenes) {
+      const sigmas = (count) => packFloats([count, MARKERS.length], Array.from({ length: count }, (_, f) => MARKERS.map((_, p) => SIGMAS(p, f))).flat());
+      points.sigmas = sigmas(times.length);
+      points_series.sigmas = sigmas(series.time_s.length);
+      series.noise_m = series.time_s.map((_, f) => (f === 5 ? null : Math.sqrt(3) * rms(MARKERS.map((_, p) => SIGMAS(p, f)))));
+    }
+  }
+  return data;
+}
+
 // Scans instead of markers, with positions as 16-bit numbers, and nothing held out.
 export function scansReport() {
   const data = fullReport({ packPoints: packQuantised, isScan: true });
@@ -487,7 +503,7 @@ export function table1Report() {
 }
 
 export const kinds = {
-  full: fullReport, 'in-vain': inVainReport, scans: scansReport, 'two-runs': twoRuns, minimal: minimalReport, hostile: hostileReport, study: () => withoutMeasures(studyReport()),
+  full: fullReport, 'in-vain': inVainReport, 'own-noise': ownNoiseReport, scans: scansReport, 'two-runs': twoRuns, minimal: minimalReport, hostile: hostileReport, study: () => withoutMeasures(studyReport()),
   table1: table1Report, '10k': () => largeReport(10000, 30), '100k': () => largeReport(100000, 100),
 };
 

@@ -11,8 +11,11 @@ import { basename, dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { chromium } from 'playwright-core';
-import { HOSTILE, kinds, writeReport } from './fixture.mjs';
+import { HOSTILE, SIGMAS, kinds, writeReport } from './fixture.mjs';
+import { FrameArray } from '../../../src/report/page/src/decode.js';
+import { SceneData, colourings } from '../../../src/report/page/src/scene_data.js';
 import { METRIC_OF_NOISE, validationMetric } from '../../../src/report/page/src/validation_metric.js';
+import { worstPlaces } from '../../../src/report/page/src/worst.js';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const pageFolder = join(here, '../../../src/report/page');
@@ -146,7 +149,42 @@ test('the validation metric is that of the equations of Dvurecenska et al. 2018'
   assert.equal(validationMetric([[0.2, 0.3]], 1, sigma).metric, 0);
 });
 
-for (const [label, makeFile] of [['full', () => fixture('full')], ['in-vain', () => fixture('in-vain')], ['scans', () => fixture('scans')], ['study', () => fixture('study')], ['table1', () => fixture('table1')], ['minimal', () => fixture('minimal')], ['two-runs', () => fixture('two-runs')],
+test('the validation metric compares each number with its own uncertainty', () => {
+  // Errors 1, 3 and 3 with U = 2, 2 and 4: the second alone is beyond its uncertainty, and weighs 3 of 7.
+  const own = validationMetric([[1, 3], [3]], 100, 1, [[1, 1], [2]]);
+  assert.equal(own.metric, 4 / 7);
+  assert.equal(own.withinShare, 2 / 3);
+  assert.equal(own.largestErrorShare, 0.03);
+  assert.equal(validationMetric([[1, 3], [3]], 100, 1).metric, 1 / 7);
+  // The same uncertainty for all numbers, given one by one.
+  assert.deepEqual(validationMetric([[1, 1], [6]], 100, 1, [[1, 1], [1]]), validationMetric([[1, 1], [6]], 100, 1));
+});
+
+test('a residual is relative to the noise of its own point', () => {
+  const array = (shape, values) => new FrameArray({ shape, type: 'float32' }, Float32Array.from(values));
+  const scene = { times: [0, 1], points: { names: ['a', 'b'], is_scan: false, sigma: 1 } };
+  const residual = array([2, 2, 3], [3, 0, 0, 0, 4, 0, 0, 0, 2, NaN, NaN, NaN]);
+  const sigmas = array([2, 2], [1, 4, 2, NaN]);
+  const near = (found, wanted) => wanted.forEach((value, k) => assert.ok(Number.isNaN(value) ? Number.isNaN(found[k]) : Math.abs(found[k] - value) < 1e-6, `${found} for ${wanted}`));
+  const own = new SceneData(scene, { residual, sigmas, model: array([2, 2, 3], new Float32Array(12)) });
+  near(own.residualsOverNoise(0), [3, 1].map((ratio) => ratio / Math.sqrt(3)));
+  near(own.residualsOverNoise(1), [1 / Math.sqrt(3), NaN]);
+  near([own.residualScale(true).usual, own.residualScale().usual], [Math.sqrt(3), 4]);
+  // Ratios 3/√3 and 1/√3 in the worst frame; without σ of their own, 3/√3 and 4/√3.
+  assert.match(worstPlaces(null, scene, own)[1].detail, /, 1\.3 × noise$/);
+  const equal = new SceneData(scene, { residual, sigmas: null, model: own.model });
+  near(equal.residualsOverNoise(0), [3, 4].map((ratio) => ratio / Math.sqrt(3)));
+  assert.match(worstPlaces(null, scene, equal)[1].detail, /, 2\.0 × noise$/);
+  // A patch errs along its normal only.
+  const patches = new SceneData({ ...scene, points: { ...scene.points, is_scan: true } }, { residual, sigmas, model: own.model });
+  near(patches.residualsOverNoise(0), [3, 1]);
+  // The scale says what is shown.
+  const unit = (points) => colourings([{ points: { ...scene.points, residual, ...points } }]).find((one) => one.key === 'residual_sigma').unit;
+  assert.equal(unit({ sigmas }), 'times the noise of each point');
+  assert.equal(unit({}), 'times the noise');
+});
+
+for (const [label, makeFile] of [['full', () => fixture('full')], ['in-vain', () => fixture('in-vain')], ['own-noise', () => fixture('own-noise')], ['scans', () => fixture('scans')], ['study', () => fixture('study')], ['table1', () => fixture('table1')], ['minimal', () => fixture('minimal')], ['two-runs', () => fixture('two-runs')],
                                 ...givenFiles.map((file) => [basename(file), () => file])]) {
   test(`${label}: opens without an error or a request, and without empty boxes`, async () => {
     const { page, problems, close } = await open(makeFile());
@@ -225,6 +263,29 @@ test('a worst place sets the time and the camera', async () => {
   assert.notEqual(after.point, null);
   await page.locator('.worst-item').filter({ hasText: 'period' }).first().click();
   assert.notEqual((await state()).time, after.time);
+  await close();
+});
+
+test('points with noise of their own are coloured and judged by it', async () => {
+  const { page, problems, close } = await open(fixture('own-noise'));
+  await page.getByLabel('Colour', { exact: true }).selectOption('residual_sigma');
+  await page.waitForTimeout(150);
+  assert.match(await page.locator('.scale').textContent(), /residual, times the noise of each point/);
+  // The colours of the markers in a late frame, as multiples of the noise, and their residuals.
+  const { values, lengths } = await page.evaluate(() => {
+    const { view, data } = window.lacunaReport.motion;
+    view.showFrames([50, 50]);
+    const { low, high } = view.view.range;
+    return { values: [...view.panes[0].measured.geometry.getAttribute('value').array].map((share) => low + share * (high - low)), lengths: [...data[0].residualLengths(50)] };
+  });
+  for (const p of [0, 1, 5]) {
+    const wanted = lengths[p] / (Math.sqrt(3) * SIGMAS(p, 50));
+    assert.ok(Math.abs(values[p] - wanted) < 1e-3 * wanted, `marker ${p}: ${values[p]} for ${wanted}`);
+  }
+  const text = await page.locator('main').textContent();
+  for (const part of ['each marker has a σ of its own', 'error of a number over its own σ', 'for a typical point']) assert.ok(text.includes(part) || await page.locator(`[aria-label*="${part}"]`).count() > 0, part);
+  assert.equal(await page.locator('.bar-noise').count(), 0);
+  assert.deepEqual(problems, []);
   await close();
 });
 

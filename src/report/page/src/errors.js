@@ -17,16 +17,29 @@ function scenesOf(choices, recording) {
   return choices.map((choice) => ({ choice, scene: sceneOf(choice, recording) })).filter(({ scene }) => scene);
 }
 
+// What noise alone would give, below the errors of a chart: up to one value, or in each frame where points have
+// noise of their own.
+function noiseBand(scene) {
+  const own = scene.series.noise_m;
+  if (own) {
+    const known = own.map((_, f) => f).filter((f) => isNumber(own[f]));
+    return { areas: [{ x: known.map((f) => scene.series.time_s[f]), low: known.map(() => 0), high: known.map((f) => 1e3 * own[f]), colour: 'noise' }],
+             explain: ` The grey band is what noise alone would give, where each ${isScan(scene) ? 'patch' : 'marker'} has a σ of its own.` };
+  }
+  const noise = rmsOfNoise(scene.series.sigma_m ?? scene.points?.sigma, isScan(scene));
+  return noise ? { bands: [{ from: 0, to: 1e3 * noise }], lines: [{ y: 1e3 * noise }], explain: ` The grey band is what noise alone would give, up to ${millimetres(noise)}.` } : {};
+}
+
 export function errorOverTime({ choices, store }, state) {
   const all = scenesOf(choices, state.recording).filter(({ scene }) => scene.series?.rms_m?.length > 0);
   if (all.length === 0) return null;
   const { scene } = all[0];
-  const noise = rmsOfNoise(scene.series.sigma_m ?? scene.points?.sigma, isScan(scene));
+  const { explain = '', ...noise } = noiseBand(scene);
   const spans = heldOutSpans(scene.series.time_s, scene.series.fitted);
   return chart({
     title: `Error over time, ${state.recording.slice(0, 80)}`, store, height: 260,
-    explain: `The rms residual of each frame.${spans.length > 0 ? ' Shaded frames were held out.' : ''}${noise ? ` The grey band is what noise alone would give, up to ${millimetres(noise)}.` : ''} Click to go to a time.`,
-    x: 'time, s', y: 'rms residual, mm', spans, bands: noise ? [{ from: 0, to: 1e3 * noise }] : [], lines: noise ? [{ y: 1e3 * noise }] : [],
+    explain: `The rms residual of each frame.${spans.length > 0 ? ' Shaded frames were held out.' : ''}${explain} Click to go to a time.`,
+    x: 'time, s', y: 'rms residual, mm', spans, ...noise,
     series: all.map(({ choice, scene: one }) => ({ label: choice.label, x: one.series.time_s, y: inMillimetres(one.series.rms_m), colour: choice.colour })),
   });
 }

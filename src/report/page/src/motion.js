@@ -82,7 +82,7 @@ export class Motion {
 
   // The largest factor with which no arrow is longer than about a quarter of the object.
   chooseArrowScale(scenes, radius) {
-    const largest = Math.max(...scenes.map((data) => (data?.pointCount > 0 ? data.residualScale() : 0)));
+    const largest = Math.max(...scenes.map((data) => (data?.pointCount > 0 ? data.residualScale().usual : 0)));
     this.arrowScale = ARROW_SCALES.findLast((factor) => factor * largest <= radius / 2) ?? 1;
     this.arrows.select.value = String(this.arrowScale);
   }
@@ -168,10 +168,10 @@ export class Motion {
     for (const data of this.data) {
       if (!data) continue;
       if (colouring.ofPoints) {
-        const unit = colouring.key === 'residual_sigma' ? data.noise ?? Infinity : 1;
+        const scale = data.residualScale(colouring.isOverNoise);
         low = 0;
-        high = Math.max(high, data.residualScale() / unit);
-        isCut ||= data.largestResidual < data.extremeResidual;
+        high = Math.max(high, scale.usual);
+        isCut ||= scale.isCut;
       } else {
         const range = data.fieldRanges.get(colouring.name);
         if (!range) continue;

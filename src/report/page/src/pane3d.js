@@ -170,10 +170,8 @@ export class Pane {
       this.surface.material.depthWrite = opacity === 1;
     }
     if (this.measured) {
-      const residual = data.residualLengths(frame);
       const values = new Float32Array(data.pointCount).fill(NO_VALUE);
-      const unit = colouring.key === 'residual_sigma' ? data.noise ?? NaN : 1;
-      if (colouring.ofPoints) for (let k = 0; k < values.length; ++k) values[k] = share(residual[k] / unit);
+      if (colouring.ofPoints) data.residuals(frame, colouring.isOverNoise).forEach((residual, k) => { values[k] = share(residual); });
       this.showPoints(this.measured, data.measured, frame, values, mode !== 'model', this.model || !this.surface ? view.theme.measured : view.theme.scan, view);
       if (this.model) this.showPoints(this.model, data.model, frame, values, mode === 'model' || mode === 'both', view.theme.model, view);
       if (this.arrows) this.showArrows(frame, values, mode, view);

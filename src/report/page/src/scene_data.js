@@ -32,10 +32,10 @@ export function loadScene(scene) {
 
 async function loadNow(scene) {
   const { surface, points } = scene;
-  const [triangles, positions, measured, model, residual] = await Promise.all([
+  const [triangles, positions, measured, model, residual, sigmas] = await Promise.all([
     unpack(surface?.triangles), unpack(surface?.positions), unpack(points?.measured), unpack(points?.model),
-    unpack(points?.residual)]);
-  return new SceneData(scene, { triangles, positions, measured, model, residual });
+    unpack(points?.residual), unpack(points?.sigmas)]);
+  return new SceneData(scene, { triangles, positions, measured, model, residual, sigmas });
 }
 
 // The rms length that noise of standard deviation σ per component gives to a point.
@@ -50,8 +50,8 @@ export class SceneData {
     this.pointCount = this.measured?.shape[1] ?? this.model?.shape[1] ?? 0;
     this.triangleCount = this.triangles ? this.triangles.shape[0] : 0;
     this.indices = this.triangles ? new Uint32Array(this.triangles.values) : null;
-    this.noise = rmsOfNoise(scene.points?.sigma, scene.points?.is_scan);
     this.fieldRanges = new Map();
+    this.residualScales = new Map();
   }
 
   // Finds the range of a field that is drawn: without its most extreme values, which would make all
@@ -95,19 +95,29 @@ export class SceneData {
     return lengths;
   }
 
-  // Almost the largest residual of all frames, m: single outliers would make all else look alike.
-  residualScale() {
-    if (this.largestResidual === undefined) {
+  // The same over the rms length that noise alone gives to the point: that of its own σ in this frame, if it has one.
+  residualsOverNoise(frame) {
+    const { sigma, is_scan: isScan } = this.scene.points ?? {};
+    const own = this.sigmas?.frame(frame);
+    return this.residualLengths(frame).map((length, k) => length / (rmsOfNoise(own ? own[k] : sigma, isScan) ?? NaN));
+  }
+
+  // The residuals that a colouring of points shows.
+  residuals(frame, isOverNoise) { return isOverNoise ? this.residualsOverNoise(frame) : this.residualLengths(frame); }
+
+  // Almost the largest residual of all frames, in m or over the noise: single outliers would make all else look alike.
+  residualScale(isOverNoise = false) {
+    if (!this.residualScales.has(isOverNoise)) {
       const all = [];
       const every = Math.max(1, Math.floor((this.times.length * this.pointCount) / 200000));
       for (let frame = 0; frame < this.times.length; frame += every) {
-        for (const value of this.residualLengths(frame)) if (value >= 0) all.push(value);
+        for (const value of this.residuals(frame, isOverNoise)) if (value >= 0) all.push(value);
       }
       all.sort((a, b) => a - b);
-      this.largestResidual = all.length > 0 ? all[Math.min(all.length - 1, Math.floor(USUAL_SHARE * all.length))] : 0;
-      this.extremeResidual = all.at(-1) ?? 0;
+      const usual = all[Math.min(all.length - 1, Math.floor(USUAL_SHARE * all.length))] ?? 0;
+      this.residualScales.set(isOverNoise, { usual, isCut: usual < (all.at(-1) ?? 0) });
     }
-    return this.largestResidual;
+    return this.residualScales.get(isOverNoise);
   }
 
   // Normals of some triangles in the first frame, as long as twice the area of each.
@@ -153,7 +163,8 @@ export function colourings(scenes) {
     const shown = largest > 0 && largest < 1e-5 ? { unit: 'µm', factor: 1e6 } : { unit: 'mm', factor: 1e3 };
     list.push({ key: 'residual', label: 'residual', ...shown, diverging: false, ofPoints: true });
     if (scenes.some((scene) => rmsOfNoise(scene?.points?.sigma, scene?.points?.is_scan))) {
-      list.push({ key: 'residual_sigma', label: 'residual', unit: 'times the noise', factor: 1, diverging: false, ofPoints: true });
+      const unit = scenes.some((scene) => scene?.points?.sigmas) ? 'times the noise of each point' : 'times the noise';
+      list.push({ key: 'residual_sigma', label: 'residual', unit, factor: 1, diverging: false, ofPoints: true, isOverNoise: true });
     }
   }
   for (const scene of scenes) {

@@ -25,18 +25,22 @@ function makeRandom(seed) {
 }
 
 // `frames` holds for each frame the list of errors, m; `largest` is the largest measured
-// displacement, m; `sigma` the standard uncertainty of one number, m.
-export function validationMetric(frames, largest, sigma) {
-  const used = frames.filter((errors) => errors.length > 0);
-  const count = used.reduce((sum, errors) => sum + errors.length, 0);
+// displacement, m; `sigma` the standard uncertainty of one number, m. Where numbers have uncertainties
+// of their own, `sigmas` holds them like `frames`, and `sigma` is that of a typical number: the error of
+// each number is then compared with its own expanded uncertainty. The thresholds of the curve are for a
+// typical number, and scaled for the others.
+export function validationMetric(frames, largest, sigma, sigmas = null) {
+  const scale = (errors, f) => (sigmas ? errors.map((error, k) => (error * sigma) / sigmas[f][k]) : errors);
+  const used = frames.map((errors, f) => ({ errors, scaled: scale(errors, f) })).filter(({ errors }) => errors.length > 0);
+  const count = used.reduce((sum, { errors }) => sum + errors.length, 0);
   if (count === 0 || !(sigma > 0)) return null;
   const threshold = COVERAGE * sigma;
-  const biggest = used.reduce((most, errors) => errors.reduce((a, b) => Math.max(a, b), most), 0);
-  const grid = thresholds(threshold, biggest);
+  const biggestOf = (which) => used.reduce((most, frame) => frame[which].reduce((a, b) => Math.max(a, b), most), 0);
+  const grid = thresholds(threshold, biggestOf('scaled'));
   // Per frame: the sum of the errors, and the sum of those below each threshold.
-  const sums = used.map((errors) => errors.reduce((a, b) => a + b, 0));
-  const below = used.map((errors) => grid.map((limit) => errors.reduce((sum, error) => (error < limit ? sum + error : sum), 0)));
-  const within = used.map((errors) => errors.filter((error) => error < threshold).length);
+  const sums = used.map(({ errors }) => errors.reduce((a, b) => a + b, 0));
+  const below = used.map(({ errors, scaled }) => grid.map((limit) => errors.reduce((sum, error, k) => (scaled[k] < limit ? sum + error : sum), 0)));
+  const within = used.map(({ scaled }) => scaled.filter((error) => error < threshold).length);
   const at = grid.indexOf(threshold);
   const curveOf = (chosen) => {
     let total = 0;
@@ -52,7 +56,7 @@ export function validationMetric(frames, largest, sigma) {
   return {
     count, frames: used.length, threshold, largest, thresholdShare: largest > 0 ? threshold / largest : null,
     metric: curve[at], low: band.low[at], high: band.high[at], withinShare: within.reduce((a, b) => a + b, 0) / count,
-    largestErrorShare: largest > 0 ? biggest / largest : null, grid, curve, curveLow: band.low, curveHigh: band.high,
+    largestErrorShare: largest > 0 ? biggestOf('errors') / largest : null, grid, curve, curveLow: band.low, curveHigh: band.high,
   };
 }
 

@@ -34,25 +34,29 @@ function fromComparison(recording) {
   return items;
 }
 
+// NaN where no value is known.
+function rmsOf(values) {
+  const known = values.filter((value) => !Number.isNaN(value));
+  return Math.sqrt(known.reduce((sum, value) => sum + value ** 2, 0) / known.length);
+}
+
 function fromResiduals(data) {
   if (!data?.measured && !data?.residual) return [];
   let best = null;
   const frames = [];
   for (let frame = 0; frame < data.times.length; ++frame) {
     const lengths = data.residualLengths(frame);
-    let sum = 0, count = 0;
     for (let k = 0; k < lengths.length; ++k) {
-      if (Number.isNaN(lengths[k])) continue;
-      sum += lengths[k] ** 2;
-      ++count;
-      if (!best || lengths[k] > best.value) best = { point: k, frame, value: lengths[k] };
+      if (lengths[k] > (best?.value ?? -1)) best = { point: k, frame, value: lengths[k] };
     }
-    if (count > 0) frames.push({ frame, rms: Math.sqrt(sum / count) });
+    const rms = rmsOf(lengths);
+    if (!Number.isNaN(rms)) frames.push({ frame, rms });
   }
   if (!best) return [];
   const part = (frame) => (data.scene.fitted?.[frame] === false ? 'held out' : data.scene.fitted ? 'fitted' : '');
   const worst = frames.reduce((a, b) => (b.rms > a.rms ? b : a));
-  const over = data.noise ? `, ${timesNoise(worst.rms / data.noise)}` : '';
+  const overNoise = rmsOf(data.residualsOverNoise(worst.frame));
+  const over = isNumber(overNoise) ? `, ${timesNoise(overNoise)}` : '';
   return [
     { point: best.point, time: data.times[best.frame], part: part(best.frame), value: best.value,
       title: `${data.pointName(best.point)} at ${shortSeconds(data.times[best.frame])}`, detail: `largest error, ${millimetres(best.value)}` },

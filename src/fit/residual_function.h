@@ -3,8 +3,8 @@
 // The residual r holds predicted minus measured values, divided by the standard deviation of their
 // noise and decorrelated where the noise is correlated, so that each entry has unit variance if the
 // model is right.
-#ifndef LACUNA_FIT_PREDICTION_FUNCTION_H_
-#define LACUNA_FIT_PREDICTION_FUNCTION_H_
+#ifndef LACUNA_FIT_RESIDUAL_FUNCTION_H_
+#define LACUNA_FIT_RESIDUAL_FUNCTION_H_
 
 #include <Eigen/Core>
 #include <functional>
@@ -13,9 +13,10 @@
 
 namespace lacuna {
 
-struct Prediction {
-  bool usable = false;
-  std::string message;       // why the prediction is not usable
+// The residual at some parameters and, if it was requested, its Jacobian.
+struct ResidualEvaluation {
+  bool usable = false;       // whether the model could be predicted
+  std::string message;       // why it could not
   Eigen::VectorXd residual;  // n, whitened, dimensionless
   Eigen::MatrixXd jacobian;  // n × parameters, ∂r/∂θ; 0 × 0 if it was not requested
   // For each row, the row of the same quantity one frame earlier, or −1 in its first frame. Empty
@@ -31,9 +32,9 @@ struct Prediction {
 
 // Must be a function of the parameters θ (SI) alone, and must return the same number of rows for
 // all of them. The Jacobian may be omitted when `with_jacobian` is false.
-using PredictionFunction =
-    std::function<Prediction(const Eigen::VectorXd& parameters, bool with_jacobian)>;
+using ResidualFunction =
+    std::function<ResidualEvaluation(const Eigen::VectorXd& parameters, bool with_jacobian)>;
 
 }  // namespace lacuna
 
-#endif  // LACUNA_FIT_PREDICTION_FUNCTION_H_
+#endif  // LACUNA_FIT_RESIDUAL_FUNCTION_H_

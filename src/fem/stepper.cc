@@ -1,4 +1,4 @@
-#include "fem/simulate.h"
+#include "fem/stepper.h"
 
 #include <fmt/format.h>
 #include <glog/logging.h>
@@ -77,7 +77,7 @@ struct Stepper::Implementation {
         held(CheckedHeldComponents(model)),
         solver(model.body->pattern, held, options.linear),
         tangent(model.body->pattern),
-        missing_mass(MissingMass(model)) {}
+        missing_mass(DescribeMissingMass(model)) {}
 
   NewtonSummary Solve(const StepEquation& equation, const Eigen::VectorXd& force,
                       const Eigen::VectorXd& target, double tolerance, Eigen::VectorXd* position) {
@@ -88,7 +88,7 @@ struct Stepper::Implementation {
   // Continuation from the start, which an applied force r(start) holds in balance, to the wanted
   // state: that force is removed and the grips are moved in fractions.
   NewtonSummary SolveByIncrements(const StepEquation& equation, const Eigen::VectorXd& force,
-                                  const Eigen::VectorXd& target, double tolerance, int* increments,
+                                  const Eigen::VectorXd& target, double tolerance,
                                   Eigen::VectorXd* position) {
     constexpr double kSmallestIncrement = 1.0 / 512;
     // Limits the total number of iterations, as a multiple of those of one solution. Continuations
@@ -109,7 +109,6 @@ struct Stepper::Implementation {
       summary = Solve(equation, force + (1 - aim) * imbalance, start + aim * (target - start),
                       tolerance, &trial);
       iterations += summary.iterations;
-      ++*increments;
       if (summary.IsUsable()) {
         reached = aim;
         *position = trial;
@@ -165,8 +164,7 @@ struct Stepper::Implementation {
     if (!solved.IsUsable() || inverted >= 0) {
       const int iterations = solved.iterations;
       position = history->position;
-      solved =
-          SolveByIncrements(equation, force, target, tolerance, &result.load_increments, &position);
+      solved = SolveByIncrements(equation, force, target, tolerance, &position);
       solved.iterations += iterations;
       inverted = find_inverted();
     }

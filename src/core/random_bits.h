@@ -1,8 +1,8 @@
 // Random numbers without a state: each is a function of a few whole numbers, e.g. of a seed, a
 // frame and a pixel. They can therefore be drawn in any order and by any thread with the same
 // result.
-#ifndef LACUNA_SCAN_RANDOM_BITS_H_
-#define LACUNA_SCAN_RANDOM_BITS_H_
+#ifndef LACUNA_CORE_RANDOM_BITS_H_
+#define LACUNA_CORE_RANDOM_BITS_H_
 
 #include <cmath>
 #include <cstdint>
@@ -35,4 +35,4 @@ inline double Normal(uint64_t bits) {
 
 }  // namespace lacuna
 
-#endif  // LACUNA_SCAN_RANDOM_BITS_H_
+#endif  // LACUNA_CORE_RANDOM_BITS_H_

@@ -3,8 +3,8 @@
 // Each step solves the equation of motion at its end (step_equation.h) by Newton's method
 // (newton.h). A step or equilibrium that is not reached directly is approached in increments of the
 // load together with the motion of the grips.
-#ifndef LACUNA_FEM_SIMULATE_H_
-#define LACUNA_FEM_SIMULATE_H_
+#ifndef LACUNA_FEM_STEPPER_H_
+#define LACUNA_FEM_STEPPER_H_
 
 #include <Eigen/Core>
 #include <functional>
@@ -42,8 +42,7 @@ struct StepSummary {
   std::string message;  // why the step failed, with time and node or element
   int iterations = 0;   // NewtonSummary::iterations
   int factorisations = 0;
-  int load_increments = 0;  // 0: reached directly
-  double residual = 0;      // ‖r‖∞ over the free nodes, N
+  double residual = 0;  // ‖r‖∞ over the free nodes, N
   bool IsUsable() const { return status == Status::kConverged; }
 };
 
@@ -77,4 +76,4 @@ class Stepper {
 
 }  // namespace lacuna
 
-#endif  // LACUNA_FEM_SIMULATE_H_
+#endif  // LACUNA_FEM_STEPPER_H_
