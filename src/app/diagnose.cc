@@ -5,9 +5,11 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "core/text_layout.h"
 #include "diagnosis/diagnosis_run.h"
 #include "diagnosis/extension_rounds.h"
 #include "prediction/recorded_motion.h"
+#include "report/agreement_text.h"
 #include "report/diagnosis_report.h"
 #include "report/ledger_picture.h"
 #include "report/ledger_report.h"
@@ -74,6 +76,11 @@ int RunDiagnose(const DiagnoseArguments& arguments, const OutputOptions& output)
   if (output.PrintsText())
     fmt::print("{}", output.verbose ? DiagnosisReport(diagnosis, fitted.record, run)
                                     : VerdictWithNames(diagnosis) + "\n");
+  // Where they disagree, the headline of the report says so.
+  const std::string agreement = ExplainAgreement(diagnosis.agreement);
+  if (output.PrintsText() && !output.verbose && !diagnosis.agreement.Disagree() &&
+      !agreement.empty())
+    fmt::print("{}", Wrapped(agreement, "", ""));
   WriteFitReport(output, run, &progress);
   return 0;
 }

@@ -83,15 +83,11 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
   std::optional<Misfit> predicted = KnownMisfit(model, r, known);
   recording.misfit =
       predicted ? *std::move(predicted) : model.Predict(item.frames, recording.nuisance);
-  // A held-out recording determines the offsets of its places only from the frames before its
-  // motion, and only where no fitted recording determines them.
-  std::vector<char> tells_places;
+  const std::vector<char> tells_places = TellsPlaces(item, recording.misfit.frames);
   std::vector<double> times;
   for (const int frame : recording.misfit.frames) {
-    const double time = item.recording.times[frame];
-    times.push_back(time);
+    times.push_back(item.recording.times[frame]);
     recording.fitted.push_back(item.IsFitted(frame));
-    tells_places.push_back(item.fitted ? recording.fitted.back() : time <= item.StartTime());
   }
   recording.has_own_places = !places;
   recording.place_offset = places ? *places
@@ -108,6 +104,14 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
 }
 
 }  // namespace
+
+std::vector<char> TellsPlaces(const PredictedRecording& item, const std::vector<int>& frames) {
+  std::vector<char> tells;
+  for (const int frame : frames)
+    tells.push_back(item.fitted ? item.IsFitted(frame)
+                                : item.recording.times[frame] <= item.StartTime());
+  return tells;
+}
 
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,

@@ -25,6 +25,10 @@ struct RecordingMisfit {
   std::vector<FittedReaction> reactions;  // one per reading of RecordingModel::Reactions()
 };
 
+// For each of these frames of a recording, whether it tells where the recording's points lie on the
+// object. A recording that is not fitted does so only in the frames before its motion.
+std::vector<char> TellsPlaces(const PredictedRecording& item, const std::vector<int>& frames);
+
 // The misfits of all recordings at these values of the problem's parameters. For a recording that
 // is not fitted, the nuisances and the places are those of CalibrationProblem::NuisanceOf and
 // RecordingWithSamePlaces.

@@ -10,6 +10,7 @@
 #include "analysis/measurement_errors.h"
 #include "analysis/residual_statistics.h"
 #include "calibration/calibration_run.h"
+#include "calibration/held_out_misfit.h"
 #include "comparison/comparison_fields.h"
 #include "comparison/force_estimate.h"
 #include "comparison/part_comparison.h"
@@ -26,7 +27,7 @@ namespace {
 // A replayed residual may deviate from the recorded one by at most this many σ. Rounding in another
 // order of summation causes far smaller deviations, another model causes larger ones.
 constexpr double kSameMotion = 0.1;
-constexpr double kAnyPlace = 1;  // m, so wide a prior leaves the places of the points undetermined
+constexpr double kAnyPlace = 1;  // m, so wide a prior leaves the places of the markers undetermined
 // At most this share of the patches may deviate by more: rounding can move single scanned points
 // into a neighbouring patch. Larger: small changes of the model remain unnoticed.
 constexpr double kOtherMatches = 0.01;
@@ -55,40 +56,30 @@ bool MatchesFittedMarkers(const RecordedResiduals& residuals, const ReplayedMoti
   return true;
 }
 
-// The same for scans. The fit has subtracted an error of each patch that is the same in all frames.
-bool MatchesFittedPatches(const RecordedResiduals& residuals, const ReplayedMotion& motion) {
+// Whether the motion is the one that was fitted to scans: the residuals along the normals are the
+// recorded ones, without the errors of the patches that the fit has subtracted. `errors`: as in the
+// fit.
+bool MatchesFittedPatches(const RecordedResiduals& residuals, const ReplayedMotion& motion,
+                          const PredictedRecording& item, const MeasurementErrors& errors) {
   const Eigen::MatrixXd& recorded = residuals.along_normal;
   const Misfit& misfit = motion.misfit;
   if (misfit.points != recorded.rows() || std::ssize(misfit.frames) != recorded.cols())
     return false;
-  std::vector<double> seen;  // in both
+  const Eigen::VectorXd replayed = misfit.ResidualWithout(CommonError(
+      misfit.residual, misfit.count, misfit.points, errors, TellsPlaces(item, misfit.frames)));
   Eigen::Index in_any = 0, other = 0;
-  Eigen::VectorXd shown = Eigen::VectorXd::Zero(recorded.size());
   for (Eigen::Index k = 0; k < recorded.size(); ++k) {
     const bool in_fit = !std::isnan(recorded.reshaped()[k]);
     const bool now = misfit.count[static_cast<size_t>(k)] > 0;
-    seen.push_back(in_fit && now);
     in_any += in_fit || now;
-    other += in_fit != now;
-    if (in_fit && now) shown[k] = misfit.residual[k] - recorded.reshaped()[k];
-  }
-  const double noise = Rms(residuals.sigma);
-  if (std::isnan(noise)) return other == 0;
-  const Eigen::MatrixXd offsets =
-      CommonError(shown, seen, misfit.points, {noise, kAnyPlace},
-                  std::vector<char>(static_cast<size_t>(recorded.cols()), 1));
-  for (Eigen::Index k = 0; k < recorded.size(); ++k) {
-    const double difference = std::abs(shown[k] - offsets(0, k % misfit.points));
-    other += seen[static_cast<size_t>(k)] != 0 &&
-             difference > kSameMotion * residuals.sigma.reshaped()[k];
+    if (in_fit && now) {
+      const double difference = std::abs(replayed[k] - recorded.reshaped()[k]);
+      other += difference > kSameMotion * residuals.sigma.reshaped()[k];
+    } else {
+      other += in_fit != now;
+    }
   }
   return static_cast<double>(other) <= kOtherMatches * static_cast<double>(in_any);
-}
-
-bool MatchesFit(const RecordedResiduals& residuals, const ReplayedMotion& motion, double noise,
-                bool is_scan) {
-  return is_scan ? MatchesFittedPatches(residuals, motion)
-                 : MatchesFittedMarkers(residuals, motion, noise);
 }
 
 // `over_noise`: LengthsOverNoise() of the whole recording.
@@ -186,7 +177,11 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
                     " stops before its end: " + motion.summary.message);
       continue;
     }
-    if (!MatchesFit(residuals, motion, comparison->record.noise, recording.is_scan)) {
+    const MeasurementErrors errors = problem.ErrorsOf(model);
+    const bool matches = recording.is_scan
+                             ? MatchesFittedPatches(residuals, motion, model.recording(), errors)
+                             : MatchesFittedMarkers(residuals, motion, comparison->record.noise);
+    if (!matches) {
       note_omission("the model no longer predicts " + recording.name + " as it did in the fit");
       continue;
     }
@@ -196,7 +191,7 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
     for (size_t p = 0; p < ranges.size(); ++p)
       AddMotionTrends(motion, residuals, over_noise, ranges[p], &recording.parts[p]);
     recording.loaded_most = FindLoadedMost(model.model(), motion);
-    comparison->forces[r] = EstimateUnexplainedForce(model, motion, problem.ErrorsOf(model));
+    comparison->forces[r] = EstimateUnexplainedForce(model, motion, errors);
     recording.force = comparison->forces[r]->record;
     recording.field_frames =
         WriteComparisonFields(model, residuals, motion, *comparison->forces[r], over_noise,

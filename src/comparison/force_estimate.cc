@@ -26,9 +26,9 @@ constexpr double kAgreement = 0.1;
 constexpr double kAgreementOverSigma = 0.5;
 constexpr double kShortestStep = 0.2;  // a step that does not reduce the error is halved down to it
 constexpr int kMostPredictions = 8;
-// A step is refused after which fewer than this share of the patches of a scan are still observed,
-// because an error that is no longer observed is not a smaller error. Which markers are observed
-// does not depend on the motion.
+// A step is refused after which fewer than this share of the patches of a scan are observed, of
+// those along the motion without a force: an error that is no longer observed is not a smaller
+// error. Which markers are observed does not depend on the motion.
 constexpr double kFewestObserved = 0.9;
 // A search that has not converged is used only if the remaining error is less than this fraction of
 // the error without the force.
@@ -51,6 +51,7 @@ struct SearchState {
   ReplayedMotion motion;
   Eigen::VectorXd amplitudes;                 // amplitudes of the field, column by column
   std::optional<AmplitudeEstimate> estimate;  // source of the amplitudes; absent at first
+  double fewest_rows = 0;                     // a step that leaves fewer observed rows is refused
 };
 
 // The result of a full Gauss–Newton step according to the linear model.
@@ -85,8 +86,7 @@ ForceStep LinearStep(const LinearisedForce& at, const SearchState& state,
 // Shortens the step until the error of the nonlinear model decreases. Returns false, and leaves the
 // state unchanged, where no such step was found.
 bool TakeStep(const RecordingModel& recording, const ForceLinearisation& linearisation,
-              const LinearisedForce& at, const ForceStep& step, SearchState* state,
-              SmoothForce* field, ForceFitSummary* fit) {
+              const ForceStep& step, SearchState* state, SmoothForce* field, ForceFitSummary* fit) {
   for (double share = 1; share >= kShortestStep && fit->predictions < kMostPredictions;
        share /= 2) {
     const Eigen::VectorXd amplitudes =
@@ -96,15 +96,16 @@ bool TakeStep(const RecordingModel& recording, const ForceLinearisation& lineari
         Replay(recording, state->motion.nuisance + share * (step.nuisance - state->motion.nuisance),
                field->Effects());
     ++fit->predictions;
-    if (!trial.summary.IsUsable() ||
-        linearisation.Coordinates(trial) < kFewestObserved * at.coordinates)
+    if (!trial.summary.IsUsable() || linearisation.Coordinates(trial) < state->fewest_rows)
       continue;
     const double reached = linearisation.Rms(trial);
     fit->converged =
         share == 1 && std::abs(reached - step.expected_rms) <
                           std::max(kAgreement * step.expected_rms, kAgreementOverSigma);
     if (!fit->converged && reached >= step.rms_before) continue;
-    *state = {std::move(trial), amplitudes, step.estimate};
+    state->motion = std::move(trial);
+    state->amplitudes = amplitudes;
+    state->estimate = step.estimate;
     fit->rms_over_sigma_with = reached;
     return true;
   }
@@ -125,7 +126,7 @@ std::string Search(const RecordingModel& recording, const ForceLinearisation& li
     if (pass == 0) fit->rms_over_sigma_without = step.rms_before;
     // The first pass may be far from the solution; from the second on the prior's shape is kept.
     if (pass == 1) priors = {priors[step.estimate.shape]};
-    stuck = !TakeStep(recording, linearisation, at, step, state, field, fit);
+    stuck = !TakeStep(recording, linearisation, step, state, field, fit);
   }
   return "";
 }
@@ -148,7 +149,10 @@ UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
   const ForceLinearisation linearisation(recording, motion, field, errors);
   if (linearisation.Coordinates(motion) == 0)
     return Unusable(force, "none of its points was observed");
-  SearchState state{motion, Eigen::VectorXd::Zero(field.amplitudes.size()), {}};
+  SearchState state{motion,
+                    Eigen::VectorXd::Zero(field.amplitudes.size()),
+                    {},
+                    kFewestObserved * linearisation.Coordinates(motion)};
   ForceFitSummary& fit = force.record.fit;
   fit.knots = field.KnotCount();
   fit.knot_spacing = field.spacing;

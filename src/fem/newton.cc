@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fem/kept_factor_iteration.h"
+#include "fem/largest_entry.h"
 #include "fem/node_rotations.h"
 #include "fem/unsymmetric_factor.h"
 
@@ -124,6 +125,7 @@ class Newton {
     NewtonIterate next = Evaluate(at->position + step);
     if (!(next.residual.norm() / at->residual.norm() <= kSufficientRatio)) return false;
     has_tangent_ = true;
+    slow_steps_ = 0;
     *at = std::move(next);
     return true;
   }
@@ -176,10 +178,7 @@ class Newton {
     const double slope = at->residual.dot(*step);
     const double work = Work(*at, full, *step);
     const bool falls = Falls(at, &full, slope, work);
-    if (MayLackSkew(*at, full, falls) && AdvanceByWholeTangent(at)) {
-      needs_skew_ = true;
-      return true;
-    }
+    if (IsSlow(*at, full) && falls && AdvanceByWholeTangent(at)) return true;
     if (falls) {
       *at = std::move(full);
       // Near the solution the exact tangent is definite and converges quadratically.
@@ -194,34 +193,38 @@ class Newton {
         return true;
       }
     }
+    if (AdvanceByWholeTangent(at)) return true;
     may_climb_ = false;
     if (SearchLine(at, *step, slope, full)) return true;
     return Fail(NewtonSummary::Status::kNoConvergence, "no descent along the Newton direction");
   }
 
-  // Whether the skew-symmetric part of the tangent, which a Newton step leaves out, may be what
-  // keeps the residual from falling: the step does not reduce it enough, or several steps in
-  // succession have hardly reduced it. Such steps converge linearly at best, and not at all where a
-  // load that turns with the body bends it far.
-  bool MayLackSkew(const NewtonIterate& from, const NewtonIterate& to, bool falls) {
-    // The ratio of residuals of a slow step, and the number of slow steps in succession that are
-    // tolerated. Smaller values factorise the whole tangent more often.
-    constexpr double kSlow = 0.5;
+  // Whether several steps in succession, of which this is the last, have hardly reduced the
+  // residual. Where the tangent has a skew-symmetric part, which a Newton step leaves out, steps
+  // converge linearly at best, and not at all where a load that turns with the body bends it far.
+  bool IsSlow(const NewtonIterate& from, const NewtonIterate& to) {
+    // Smaller: the whole tangent is factorised more often.
     constexpr int kMostSlow = 3;
     slow_steps_ = to.residual.norm() > kSlow * from.residual.norm() ? slow_steps_ + 1 : 0;
-    return !whole_fails_ && (!falls || slow_steps_ >= kMostSlow);
+    return slow_steps_ >= kMostSlow;
   }
 
-  // The step of the whole tangent. No value where it has no skew-symmetric part or is singular.
+  // The step of the whole tangent. No value where the skew-symmetric part is negligible, where the
+  // tangent is singular or too large for an LU factor, and where the step leads uphill on the
+  // symmetric part, as it may near an unstable equilibrium.
   std::optional<Eigen::VectorXd> WholeStep(const NewtonIterate& at) const {
+    constexpr Eigen::Index kMostComponents = 60'000;  // larger: a factor of several GB
+    constexpr double kNegligible = 1e-6;              // relative to the symmetric part
+    if (at.position.size() > kMostComponents) return std::nullopt;
     BlockMatrix skew(tangent_.shared_pattern());
     if (!problem_.equation.SkewTangent(at.position, &skew)) return std::nullopt;
     BlockMatrix symmetric(tangent_.shared_pattern());
     problem_.equation.Tangent(at.position, /*convexify=*/false, &symmetric);
+    if (LargestEntry(skew) <= kNegligible * LargestEntry(symmetric)) return std::nullopt;
     const UnsymmetricFactor whole(problem_.held, symmetric, &skew);
     if (!whole.IsUsable()) return std::nullopt;
     Eigen::VectorXd step = whole.Solve(-at.residual);
-    if (!step.allFinite()) return std::nullopt;
+    if (!step.allFinite() || step.dot(at.residual) >= 0) return std::nullopt;
     return step;
   }
 
@@ -231,13 +234,13 @@ class Newton {
   // is not tried again.
   bool AdvanceByWholeTangent(NewtonIterate* at) {
     constexpr double kSufficient = 1e-4;
-    // The shortest step that is tried. Smaller values give up later.
-    constexpr double kShortest = 1.0 / 64;
+    constexpr double kShortest = 1.0 / 64;  // length of a step; smaller values give up later
+    if (whole_fails_) return false;
+    whole_fails_ = true;
     const double before = at->residual.norm();
     const auto is_sufficient = [&](const NewtonIterate& to, double length) {
       return to.residual.norm() <= (1 - kSufficient * length) * before;  // false for NaN
     };
-    whole_fails_ = true;
     const std::optional<Eigen::VectorXd> step = WholeStep(*at);
     if (!step) return false;
     NewtonIterate trial = Evaluate(at->position + *step);
@@ -247,13 +250,16 @@ class Newton {
       if (const std::optional<Eigen::VectorXd> next = WholeStep(trial))
         trial = Evaluate(trial.position + *next);
     }
-    for (double length = 1; !is_sufficient(trial, length);) {
+    double length = 1;
+    while (!is_sufficient(trial, length)) {
       length /= 2;
       if (length < kShortest) return false;
       trial = Evaluate(at->position + length * *step);
     }
+    needs_skew_ = length == 1 && trial.residual.norm() <= kSlow * before;
     *at = std::move(trial);
     whole_fails_ = convexify_ = has_tangent_ = false;
+    may_climb_ = true;
     return true;
   }
 
@@ -349,6 +355,9 @@ class Newton {
     return false;
   }
 
+  // The ratio of the residuals after and before a step above which it is slow.
+  static constexpr double kSlow = 0.5;
+
   const NewtonProblem& problem_;
   LinearSolver& solver_;
   BlockMatrix& tangent_;
@@ -356,8 +365,8 @@ class Newton {
   bool convexify_ = false;
   bool may_climb_ = true;
   int slow_steps_ = 0;                      // in succession, which hardly reduced the residual
-  bool needs_skew_ = false;                 // a step of the whole tangent has served
-  bool whole_fails_ = false;                // the last one that was tried did not serve
+  bool needs_skew_ = false;                 // the whole tangent has served, and comes first
+  bool whole_fails_ = false;                // its last step did not serve
   bool has_tangent_ = false;                // `tangent_` is exact for an earlier iterate
   std::vector<Eigen::Matrix3d> rotations_;  // rotations of the nodes at that iterate
   // Residuals below this norm, N, are rounding errors. Infinite until a tangent has been assembled.

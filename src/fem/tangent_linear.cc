@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "fem/held_components.h"
+#include "fem/largest_entry.h"
 #include "fem/tangent_solver.h"
 
 namespace lacuna {
@@ -33,12 +34,6 @@ struct OutsideState {
   std::shared_ptr<const Effect> effect;  // null if the perturbation adds none
   Eigen::VectorXd value;                 // z
 };
-
-bool IsZero(const BlockMatrix& matrix) {
-  const double* values = matrix.values();
-  return std::all_of(values, values + 9 * matrix.pattern().BlockCount(),
-                     [](double value) { return value == 0; });
-}
 
 }  // namespace
 
@@ -176,7 +171,7 @@ struct TangentLinear::Implementation {
         model.effects[j]->AddTangents(kinematics, weights, false, matrix);
         model.effects[j]->AddSkewTangents(kinematics, weights, matrix);
       }
-      return !IsZero(*matrix);
+      return LargestEntry(*matrix) != 0;
     };
     has_velocity = assemble({.velocity = equation.rate()}, &by_velocity);
     has_acceleration = assemble({.acceleration = 1}, &by_acceleration);

@@ -228,9 +228,9 @@ std::string CalibrationSummary(const CalibrationRecord& record) {
   }
   std::vector<std::string> more;
   if (const size_t others = record.parameters.size() - static_cast<size_t>(shown); others > 0)
-    more.push_back(fmt::format("{} further parameters", others));
-  if (!record.prior_conflicts.empty())
-    more.push_back(fmt::format("{} conflicts with priors", record.prior_conflicts.size()));
+    more.push_back(fmt::format("{} further parameter{}", others, others == 1 ? "" : "s"));
+  if (const size_t conflicts = record.prior_conflicts.size(); conflicts > 0)
+    more.push_back(fmt::format("{} conflict{} with priors", conflicts, conflicts == 1 ? "" : "s"));
   if (!more.empty()) text += fmt::format("  {}: --verbose lists them\n", fmt::join(more, " and "));
   return text + NotesText(record);
 }

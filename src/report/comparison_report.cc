@@ -33,18 +33,19 @@ bool IsWhite(double p_value) { return p_value >= kSignificant; }
 // The multiple of the noise that the fit assumed.
 std::string MultipleText(const ComparedRecording& recording, const ErrorSize& error) {
   const double noise_rms = recording.RmsOfNoise(recording.noise);
-  const char* component = recording.is_scan ? "for a patch along its normal" : "per coordinate";
   const bool have_equal_noise =
       std::abs(error.rms_over_sigma * noise_rms - error.rms) <= kOtherNoise * error.rms;
   if (have_equal_noise)
     return fmt::format(
         "{:.1f} times the {} that noise alone would give (σ = {} {}, as assumed in the fit)",
-        error.rms_over_sigma, Millimetres(noise_rms), Millimetres(recording.noise), component);
-  const char* point = recording.is_scan ? "patch" : "marker";
+        error.rms_over_sigma, Millimetres(noise_rms), Millimetres(recording.noise),
+        recording.is_scan ? "for a patch along its normal" : "per coordinate");
   return fmt::format(
       "{:.1f} times what noise alone would give, where each {} counts in units of its own σ ({} "
-      "{} for a typical {}, as assumed in the fit)",
-      error.rms_over_sigma, point, Millimetres(recording.noise), component, point);
+      "{}, as assumed in the fit)",
+      error.rms_over_sigma, recording.is_scan ? "patch" : "marker", Millimetres(recording.noise),
+      recording.is_scan ? "for a typical patch along its normal"
+                        : "per coordinate for a typical marker");
 }
 
 std::string SizeText(const ComparedRecording& recording, const ErrorSize& error) {

@@ -22,9 +22,20 @@ function scenesOf(choices, recording) {
 function noiseBand(scene) {
   const own = scene.series.noise_m;
   if (own) {
-    const known = own.map((_, f) => f).filter((f) => isNumber(own[f]));
-    return { areas: [{ x: known.map((f) => scene.series.time_s[f]), low: known.map(() => 0), high: known.map((f) => 1e3 * own[f]), colour: 'noise' }],
-             explain: ` The grey band is what noise alone would give, where each ${isScan(scene) ? 'patch' : 'marker'} has a σ of its own.` };
+    // One area for each run of frames in which points were seen; a single frame has a level instead.
+    const runs = [];
+    own.forEach((value, f) => {
+      if (!isNumber(value)) return;
+      if (f === 0 || !isNumber(own[f - 1])) runs.push([]);
+      runs.at(-1).push(f);
+    });
+    const explain = ` The grey band is what noise alone would give, where each ${isScan(scene) ? 'patch' : 'marker'} has a σ of its own.`;
+    if (runs.length === 1 && runs[0].length === 1) {
+      const level = 1e3 * own[runs[0][0]];
+      return { bands: [{ from: 0, to: level }], lines: [{ y: level }], explain };
+    }
+    const areas = runs.map((run) => ({ x: run.map((f) => scene.series.time_s[f]), low: run.map(() => 0), high: run.map((f) => 1e3 * own[f]), colour: 'noise' }));
+    return { areas, explain };
   }
   const noise = rmsOfNoise(scene.series.sigma_m ?? scene.points?.sigma, isScan(scene));
   return noise ? { bands: [{ from: 0, to: 1e3 * noise }], lines: [{ y: 1e3 * noise }], explain: ` The grey band is what noise alone would give, up to ${millimetres(noise)}.` } : {};
