@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
-#include "calibration/calibration_run.h"
+#include "comparison/coarse_bar.h"
 #include "comparison/compared_motion.h"
 #include "comparison/comparison_files.h"
 #include "comparison/force_estimate.h"
 #include "comparison/run_comparison.h"
-#include "prediction/prediction_study_reader.h"
 #include "prediction/replayed_motion.h"
 #include "record/motion_record.h"
 #include "report/comparison_report.h"
@@ -39,15 +38,8 @@ TEST(ComparedScan, AddsTrendsFieldsAndTheForce) {
   HeldBarTruth truth;
   truth.alpha = 8;  // 1/s; the model has 1
   ScanHeldBar(truth, folder.Path());
-  const std::filesystem::path experiment = folder / "study.yaml";
-  std::ofstream(experiment) << BarExperiment(
-      folder.Path(), {{"name: bar\nmesh", "name: bar\noutput: run\nmesh"},
-                      {"{name: young_modulus}, {name: mass_damping.alpha}", ""},
-                      {"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"},
-                      {"motion: {time_step: 1.5 ms}", "motion: {time_step: 3 ms}"}});
+  ASSERT_TRUE(RunBarWithLittleDamping(folder.Path(), "3 ms"));
   SilentProgress progress;
-  ASSERT_TRUE(RunCalibration(ReadPredictionStudy(Config::Load(experiment)), &progress).usable);
-
   const std::filesystem::path run = folder / "run";
   Comparison comparison = CompareRun(run);
   CompareMotion(run, &progress, &comparison);
@@ -104,12 +96,7 @@ TEST(ComparedScan, AddsTrendsFieldsAndTheForce) {
 UnexplainedForce ForceOnScans(const HeldBarTruth& truth) {
   const TemporaryFolder folder;
   ScanHeldBar(truth, folder.Path());
-  const PredictionStudy study = ReadBarStudy(
-      folder.Path(), {{"fit: {parameters: [{name: young_modulus}, {name: mass_damping.alpha}]}",
-                       "fit: {parameters: []}"},
-                      {"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"},
-                      {"alpha: 1 1/s", "alpha: 2 1/s"},
-                      {"motion: {time_step: 1.5 ms}", "motion: {time_step: 2 ms}"}});
+  const PredictionStudy study = ReadCoarseBarStudy(folder.Path());
   const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 2));
   const RecordingModel& model = problem.models()[0];
   Eigen::VectorXd nuisance =

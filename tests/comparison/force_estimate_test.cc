@@ -9,6 +9,7 @@
 
 #include "calibration/calibration_fits.h"
 #include "calibration/calibration_problem.h"
+#include "comparison/coarse_bar.h"
 #include "support/held_bar.h"
 #include "support/replace_in_file.h"
 #include "support/silent_progress.h"
@@ -23,12 +24,7 @@ namespace {
 UnexplainedForce ForceOn(const HeldBarTruth& truth) {
   const TemporaryFolder folder;
   WriteBarRecording(folder.Path(), FilmHeldBar(truth));
-  const PredictionStudy study = ReadBarStudy(
-      folder.Path(), {{"fit: {parameters: [{name: young_modulus}, {name: mass_damping.alpha}]}",
-                       "fit: {parameters: []}"},
-                      {"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"},
-                      {"alpha: 1 1/s", "alpha: 2 1/s"},
-                      {"motion: {time_step: 1.5 ms}", "motion: {time_step: 2 ms}"}});
+  const PredictionStudy study = ReadCoarseBarStudy(folder.Path());
   const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 2));
   SilentProgress progress;
   const Calibration calibration = FitFromStart(problem, &progress);
