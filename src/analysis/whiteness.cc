@@ -18,6 +18,8 @@ constexpr int kFewestFrames = 10;  // of a row that is tested
 // Multiplications of one randomisation test, about half a second. More: p-values of long series are
 // known better, and a comparison takes longer.
 constexpr double kWork = 5e8;
+// Limits of the number of random arrangements. With the fewest, a p-value of 0.05 has a standard
+// error of 0.015, with the most one of 0.007.
 constexpr double kFewestTrials = 199, kMostTrials = 999;
 
 struct Products {

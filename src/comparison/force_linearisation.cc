@@ -58,44 +58,33 @@ ForceLinearisation::ForceLinearisation(const RecordingModel& recording,
   }
 }
 
-const Eigen::Matrix3Xd& ForceLinearisation::Measured(int frame) const {
-  return recording_.recording().recording.markers.positions[recording_.recording().frames[frame]];
-}
-
-bool ForceLinearisation::IsObserved(const ReplayedMotion& motion, int frame, int point) const {
-  if (recording_.recording().ShowsScans())
-    return motion.misfit.count[static_cast<size_t>(frame * recording_.PointCount() + point)] > 0;
-  return Measured(frame).col(point).allFinite();
-}
-
-template <typename Visit>
-void ForceLinearisation::ForEachObserved(const ReplayedMotion& motion, const Visit& visit) const {
-  Eigen::Index row = 0;
-  for (const int frame : frames_)
-    for (int m = 0; m < recording_.PointCount(); ++m, row += components_)
-      if (IsObserved(motion, frame, m)) visit(frame, m, row);
-}
-
 int ForceLinearisation::Coordinates(const ReplayedMotion& motion) const {
-  int coordinates = 0;
-  ForEachObserved(motion, [&](int, int, Eigen::Index) { coordinates += components_; });
-  return coordinates;
+  const std::vector<double> counts = Counts(motion);
+  return static_cast<int>(components_) *
+         static_cast<int>(
+             std::count_if(counts.begin(), counts.end(), [](double n) { return n > 0; }));
+}
+
+std::vector<double> ForceLinearisation::Counts(const ReplayedMotion& motion) const {
+  std::vector<double> counts;
+  for (const int frame : frames_) {
+    const auto first = motion.misfit.count.begin() + frame * recording_.PointCount();
+    counts.insert(counts.end(), first, first + recording_.PointCount());
+  }
+  return counts;
+}
+
+Eigen::MatrixXd ForceLinearisation::OfUsedFrames(const Eigen::MatrixXd& all) const {
+  Eigen::MatrixXd used(Rows(), all.cols());
+  for (size_t k = 0; k < frames_.size(); ++k)
+    used.middleRows(RowsOfFrame() * static_cast<Eigen::Index>(k), RowsOfFrame()) =
+        all.middleRows(RowsOfFrame() * frames_[k], RowsOfFrame());
+  return used;
 }
 
 Eigen::MatrixXd ForceLinearisation::Whiten(const Eigen::MatrixXd& rows,
                                            const ReplayedMotion& motion) const {
-  const PredictedRecording& item = recording_.recording();
-  const std::vector<Eigen::VectorXd>& weights = item.recording.markers.weights;
-  const auto count_of = [&](int frame, int point) {
-    if (item.ShowsScans())
-      return motion.misfit.count[static_cast<size_t>(frame * recording_.PointCount() + point)];
-    return weights.empty() ? 1 : weights[item.frames[frame]][point];
-  };
-  std::vector<double> counts;
-  for (const int frame : frames_)
-    for (int m = 0; m < recording_.PointCount(); ++m)
-      counts.push_back(IsObserved(motion, frame, m) ? count_of(frame, m) : 0);
-  return Whitened(rows, counts, recording_.PointCount(), errors_, deformation_);
+  return Whitened(rows, Counts(motion), recording_.PointCount(), errors_, deformation_);
 }
 
 ReducedResponse ForceLinearisation::Response(const ReplayedMotion& motion) const {
@@ -105,24 +94,19 @@ ReducedResponse ForceLinearisation::Response(const ReplayedMotion& motion) const
 }
 
 Eigen::VectorXd ForceLinearisation::WhitenedResidual(const ReplayedMotion& motion) const {
-  Eigen::VectorXd residual = Eigen::VectorXd::Zero(Rows());
-  ForEachObserved(motion, [&](int frame, int m, Eigen::Index row) {
-    if (recording_.recording().ShowsScans())
-      residual[row] = motion.misfit.residual[RowsOfFrame() * frame + m];
-    else
-      residual.segment<3>(row) =
-          motion.predicted.col(frame).segment<3>(3 * m) - Measured(frame).col(m);
-  });
-  return Whiten(residual, motion);
+  return Whiten(OfUsedFrames(motion.misfit.residual), motion);
 }
 
 double ForceLinearisation::Rms(const ReplayedMotion& motion) const {
   return std::sqrt(WhitenedResidual(motion).squaredNorm() / Coordinates(motion));
 }
 
-std::vector<Eigen::MatrixXd> ForceLinearisation::PointResponses(
-    const ReplayedMotion& motion, const ReducedResponse& response,
-    const std::vector<double>& times) const {
+Eigen::MatrixXd ForceLinearisation::ForceRows(const ReplayedMotion& motion,
+                                              const ReducedResponse& response) const {
+  std::vector<double> times;
+  for (const int frame : frames_)
+    times.push_back(recording_.recording().recording.times[recording_.recording().frames[frame]] -
+                    motion.delay);
   const Eigen::Index forces = field_.amplitudes.size(), nuisances = prior_deviations_.size();
   const ForceHistories hat_functions = [&](double time) {
     Eigen::MatrixXd amplitude = Eigen::MatrixXd::Zero(shapes_.cols(), forces + nuisances);
@@ -132,66 +116,39 @@ std::vector<Eigen::MatrixXd> ForceLinearisation::PointResponses(
   Eigen::MatrixXd held = hat_functions(field_.start);
   for (Eigen::Index k = 0; k < nuisances; ++k)
     if (held_shape_[k] >= 0) held(held_shape_[k], forces + k) = 1;
-  // The rows of markers are the same in all frames, those of patches follow the surface.
-  const bool shows_scans = recording_.recording().ShowsScans();
-  Eigen::MatrixXd at_markers, turned_basis;
-  if (shows_scans)
-    turned_basis = TurnedColumns(motion.registration.linear(), response.basis());
-  else
-    at_markers = recording_.Markers()->rows() * response.basis();
-  std::vector<Eigen::MatrixXd> responses;
+  const Eigen::MatrixXd basis = TurnedColumns(motion.registration.linear(), response.basis());
+  const ObservationMatrix* observed = nullptr;  // those of markers are the same in all frames
+  Eigen::MatrixXd at_points;
+  Eigen::MatrixXd rows(Rows(), forces + nuisances);
   response.Respond(held, hat_functions, times,
                    [&](int index, const Eigen::MatrixXd& position, const Eigen::MatrixXd&) {
-                     if (!shows_scans) {
-                       responses.emplace_back(at_markers * position);
-                       return;
-                     }
                      const Observed& seen =
                          motion.misfit.observed[static_cast<size_t>(frames_[index])];
-                     responses.emplace_back((*seen.rows * turned_basis) * position);
+                     if (seen.rows.get() != observed) at_points = *seen.rows * basis;
+                     observed = seen.rows.get();
+                     auto frame = rows.middleRows(RowsOfFrame() * index, RowsOfFrame());
+                     frame = at_points * position;
+                     for (int point = 0; point < recording_.PointCount(); ++point)
+                       if (seen.count[point] == 0)
+                         frame.middleRows(components_ * point, components_).setZero();
                    });
-  return responses;
+  return rows;
 }
 
 LinearisedForce ForceLinearisation::Linearise(const ReplayedMotion& motion,
                                               const ReducedResponse& response) const {
   const Eigen::Index forces = field_.amplitudes.size(), nuisances = prior_deviations_.size();
-  std::vector<double> times;
-  for (const int frame : frames_)
-    times.push_back(recording_.recording().recording.times[recording_.recording().frames[frame]] -
-                    motion.delay);
-  const std::vector<Eigen::MatrixXd> responses = PointResponses(motion, response, times);
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(Rows(), forces + nuisances);
   LinearisedForce result;
-  for (Eigen::Index k = 0; k < nuisances; ++k) {
-    const MisfitDirection& direction = recording_.nuisances()[static_cast<size_t>(k)].direction;
+  for (size_t k = 0; k < held_shape_.size(); ++k) {
+    const MisfitDirection& direction = recording_.nuisances()[k].direction;
     result.is_kept.push_back(
-        held_shape_[static_cast<size_t>(k)] < 0 &&
+        held_shape_[k] < 0 &&
         (direction.IsSimulated() || direction.kind == MisfitDirection::Kind::kCellDelay));
   }
   result.coordinates = Coordinates(motion);
-  ForEachObserved(motion, [&](int frame, int m, Eigen::Index row) {
-    const Eigen::Index index = row / RowsOfFrame();
-    if (recording_.recording().ShowsScans()) {
-      jacobian.row(row) = responses[index].row(m);
-      // 0 for the holding forces and for the nuisances that are kept.
-      jacobian.row(row).tail(nuisances) += motion.misfit.jacobian.row(RowsOfFrame() * frame + m);
-      return;
-    }
-    jacobian.middleRows<3>(row) =
-        motion.registration.linear() * responses[index].middleRows<3>(3 * m);
-    for (Eigen::Index k = 0; k < nuisances; ++k) {
-      const MisfitDirection& direction = recording_.nuisances()[static_cast<size_t>(k)].direction;
-      auto column = jacobian.col(forces + k).segment<3>(row);
-      // The columns of the hold are filled above.
-      if (direction.IsSimulated() || result.is_kept[static_cast<size_t>(k)]) continue;
-      if (direction.kind != MisfitDirection::Kind::kClock)
-        column = recording_.ByRegistration(direction, motion.registration,
-                                           motion.predicted.col(frame).segment<3>(3 * m));
-      else if (times[index] > field_.start)
-        column = -motion.velocity.col(frame).segment<3>(3 * m);
-    }
-  });
+  Eigen::MatrixXd jacobian = ForceRows(motion, response);
+  // The misfit has 0 for the holding forces, and for the nuisances that are kept.
+  jacobian.rightCols(nuisances) += OfUsedFrames(motion.misfit.jacobian);
   jacobian = Whiten(jacobian, motion);
   result.residual = WhitenedResidual(motion);
   result.force_jacobian = jacobian.leftCols(forces);

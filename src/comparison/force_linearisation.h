@@ -56,18 +56,15 @@ class ForceLinearisation {
  private:
   Eigen::Index RowsOfFrame() const { return components_ * recording_.PointCount(); }
   Eigen::Index Rows() const { return RowsOfFrame() * static_cast<Eigen::Index>(frames_.size()); }
-  const Eigen::Matrix3Xd& Measured(int frame) const;
-  bool IsObserved(const ReplayedMotion& motion, int frame, int point) const;
+  // Misfit::count of the used frames.
+  std::vector<double> Counts(const ReplayedMotion& motion) const;
+  // The rows of the used frames, of rows of all frames of the motion.
+  Eigen::MatrixXd OfUsedFrames(const Eigen::MatrixXd& all) const;
   Eigen::VectorXd WhitenedResidual(const ReplayedMotion& motion) const;
   Eigen::MatrixXd Whiten(const Eigen::MatrixXd& rows, const ReplayedMotion& motion) const;
-  // Calls visit(frame, point, first row) for each observed point of the frames that are used.
-  template <typename Visit>
-  void ForEachObserved(const ReplayedMotion& motion, const Visit& visit) const;
-  // For each used frame: positions of the markers, in the model's frame, or the rows of the
-  // patches, per unit of each amplitude and nuisance.
-  std::vector<Eigen::MatrixXd> PointResponses(const ReplayedMotion& motion,
-                                              const ReducedResponse& response,
-                                              const std::vector<double>& times) const;
+  // The rows of the observed points per unit of each amplitude, and of each nuisance that is a
+  // holding force (0 for the others).
+  Eigen::MatrixXd ForceRows(const ReplayedMotion& motion, const ReducedResponse& response) const;
 
   const RecordingModel& recording_;
   const SmoothForce& field_;

@@ -78,8 +78,7 @@ std::vector<char> AddRecordingDetails(const std::filesystem::path& run,
   if (!problem.empty()) {
     comparison->record.notes.push_back(
         "Points are identified by their number, counted from 0, and their distance from the grip "
-        "is "
-        "not known: " +
+        "is not known: " +
         problem + ".");
   }
   return are_markers;

@@ -169,7 +169,6 @@ class Newton {
   // found.
   bool Advance(NewtonIterate* at) {
     if (needs_skew_ && AdvanceByWholeTangent(at)) return true;
-    needs_skew_ = false;
     if (FollowChord(at)) return true;
     std::string why;
     const std::optional<Eigen::VectorXd> step = NewtonStep(*at, &why);
@@ -233,7 +232,6 @@ class Newton {
   // for that. If there is no such step, returns false, leaves `at` unchanged, and the whole tangent
   // is not tried again.
   bool AdvanceByWholeTangent(NewtonIterate* at) {
-    constexpr double kSufficient = 1e-4;
     constexpr double kShortest = 1.0 / 64;  // length of a step; smaller values give up later
     if (whole_fails_) return false;
     whole_fails_ = true;
@@ -290,7 +288,6 @@ class Newton {
   // Whether the potential decreases sufficiently (Armijo 1966) from one iterate to another.
   // `expected` is its change to first order, J.
   bool Falls(NewtonIterate* from, NewtonIterate* to, double expected, double work) const {
-    constexpr double kSufficient = 1e-4;
     // A decrease of the residual by this factor, along a step of a definite tangent, is sufficient.
     constexpr double kPlainlyBetter = 0.1;
     // The same where the potential has too few digits to judge by.
@@ -355,7 +352,11 @@ class Newton {
     return false;
   }
 
-  // The ratio of the residuals after and before a step above which it is slow.
+  // The share of the decrease to first order that a step must reach, the usual choice since Armijo
+  // (1966). Larger values refuse steps that serve; the solution does not depend on it.
+  static constexpr double kSufficient = 1e-4;
+  // The ratio of the residuals after and before a step above which it is slow. Smaller values
+  // factorise the whole tangent more often.
   static constexpr double kSlow = 0.5;
 
   const NewtonProblem& problem_;

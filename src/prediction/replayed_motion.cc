@@ -30,8 +30,8 @@ class EmbeddedPoints {
 
   // The element that contains a point.
   int ElementOf(Eigen::Index point) const { return places_.tet[point]; }
-  // The positions or velocities of the points for those of the nodes (3n).
-  Eigen::Matrix3Xd VectorsAt(const Eigen::VectorXd& nodal) const {
+  // The positions of the points for those of the nodes (3n).
+  Eigen::Matrix3Xd PlacesAt(const Eigen::VectorXd& nodal) const {
     if (recording_.Markers() == nullptr)
       return PointsAt(places_, Mesh(), nodal.reshaped(3, Mesh().NodeCount()));
     const Eigen::VectorXd stacked = recording_.Markers()->rows() * nodal;
@@ -49,9 +49,7 @@ class EmbeddedPoints {
 void StorePoints(const RecordingModel& recording, const EmbeddedPoints& points,
                  const PredictedState& state, int frame, ReplayedMotion* motion) {
   motion->predicted.col(frame) =
-      (motion->registration * points.VectorsAt(state.position)).reshaped();
-  motion->velocity.col(frame) =
-      (motion->registration.linear() * points.VectorsAt(state.velocity)).reshaped();
+      (motion->registration * points.PlacesAt(state.position)).reshaped();
   if (recording.Markers() != nullptr)
     for (const Eigen::Matrix3d& deformation : recording.Markers()->DeformationAt(state.position))
       motion->deformation.emplace_back(motion->registration.linear() * deformation);
@@ -65,9 +63,9 @@ void StorePoints(const RecordingModel& recording, const EmbeddedPoints& points,
   }
 }
 
-// Compares one frame with its scan. Frames must be compared in order.
-void CompareScan(const RecordingModel& recording, const PredictedState& state, int frame,
-                 bool moves, ReplayedMotion* motion) {
+// Compares one frame with what was measured in it. Frames must be compared in order.
+void CompareFrame(const RecordingModel& recording, const PredictedState& state, int frame,
+                  bool moves, ReplayedMotion* motion) {
   std::vector<MisfitDirection> directions;
   for (const RecordingModel::Nuisance& nuisance : recording.nuisances())
     directions.push_back(nuisance.direction);
@@ -90,7 +88,6 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   const Model& model = recording.model();
   Model loaded = recording.PlacedModel(nuisance);
   loaded.effects.insert(loaded.effects.end(), further.begin(), further.end());
-  const bool shows_scans = recording.recording().ShowsScans();
   const std::vector<int>& frames = recording.recording().frames;
   const PredictionOptions options = recording.Options(nuisance);
   motion.nuisance = nuisance;
@@ -109,12 +106,10 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   const Eigen::Index points = recording.PointCount();
   const Eigen::Index count = static_cast<Eigen::Index>(frames.size());
   motion.predicted.resize(3 * points, count);
-  motion.velocity.resize(3 * points, count);
   motion.strain.resize(points, count);
   motion.strain_rate.resize(points, count);
   motion.height.resize(points, count);
-  if (shows_scans)
-    motion.misfit = EmptyMisfit(recording, frames.size(), recording.nuisances().size());
+  motion.misfit = EmptyMisfit(recording, frames.size(), recording.nuisances().size());
   const EmbeddedPoints points_in_mesh(recording);
   const int last = static_cast<int>(count) - 1;
   const int stride = std::max(1, (last - at_start) / (ReplayedMotion::kMostStates - 2) + 1);
@@ -131,7 +126,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
     }
     const int frame = index < at_start ? index : index - 1;
     StorePoints(recording, points_in_mesh, state, frame, &motion);
-    if (shows_scans) CompareScan(recording, state, frame, state.time > options.start_time, &motion);
+    CompareFrame(recording, state, frame, state.time > options.start_time, &motion);
     if (index < at_start) return;
     const auto& effect_state =
         memory.Advance(state.position, state.velocity, state.time, state.time - time_before);

@@ -2,14 +2,21 @@
 #ifndef LACUNA_TESTS_COMPARISON_COARSE_BAR_H_
 #define LACUNA_TESTS_COMPARISON_COARSE_BAR_H_
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "calibration/calibration_run.h"
+#include "comparison/unexplained_force.h"
 #include "core/config.h"
 #include "prediction/prediction_study_reader.h"
+#include "record/comparison_record.h"
 #include "support/held_bar.h"
 #include "support/silent_progress.h"
 
@@ -38,6 +45,27 @@ inline bool RunBarWithLittleDamping(const std::filesystem::path& folder,
                {"motion: {time_step: 1.5 ms}", "motion: {time_step: " + time_step + "}"}});
   SilentProgress progress;
   return RunCalibration(ReadPredictionStudy(Config::Load(experiment)), &progress).usable;
+}
+
+// Rms over time of the error of one component of the net force, N.
+inline double NetForceError(const ForceHistory& history, const HeldBarTruth& truth, int axis) {
+  double squares = 0;
+  for (Eigen::Index k = 0; k < history.times.size(); ++k)
+    squares += std::pow(history.force(axis, k) - truth.body_force(history.times[k])[axis], 2);
+  return std::sqrt(squares / static_cast<double>(history.times.size()));
+}
+
+// Expects the trends of the error that need the motion of the bar, and its strains.
+inline void ExpectTrendsOfTheMotion(const ComparedRecording& bar) {
+  for (const ComparedPart& part : bar.parts) {
+    std::vector<std::string> quantities;
+    for (const ErrorTrend& trend : part.trends) quantities.push_back(trend.quantity);
+    EXPECT_THAT(quantities, testing::IsSupersetOf({"strain", "strain_rate_per_s", "height_m"}));
+  }
+  // A soft bar of 80 mm whose end hangs down by about 10 mm has surface strains of a few percent.
+  const std::vector<ErrorBin>& strain = (bar.parts[0].trends.end() - 3)->bins;
+  EXPECT_GT(strain.back().mean, 0.005);
+  EXPECT_LT(strain.back().mean, 0.2);
 }
 
 }  // namespace lacuna

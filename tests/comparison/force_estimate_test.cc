@@ -83,14 +83,6 @@ TEST(ForceEstimate, KeepsTheFittedPlacementOfAClamp) {
     EXPECT_LT(force.net.rms[axis], 2 * force.net.rms_deviation[axis]) << axis;
 }
 
-// Rms over time of the error of one component of the net force.
-double Error(const ForceHistory& history, const HeldBarTruth& truth, int axis) {
-  double squares = 0;
-  for (Eigen::Index k = 0; k < history.times.size(); ++k)
-    squares += std::pow(history.force(axis, k) - truth.body_force(history.times[k])[axis], 2);
-  return std::sqrt(squares / static_cast<double>(history.times.size()));
-}
-
 TEST(ForceEstimate, IsWithinItsUncertaintyIfTheModelIsComplete) {
   const UnexplainedForceRecord force = ForceOn({}).record;
   ASSERT_TRUE(force.usable) << force.message;
@@ -119,9 +111,9 @@ TEST(ForceEstimate, FindsAHiddenBodyForce) {
   // Sideways: within a third of the amplitude. Along the weight, a steady force can hardly be
   // distinguished from an error of the markers' places, nor along the sagging bar from a pull:
   // within three deviations.
-  EXPECT_LT(Error(found.history, truth, 1), 0.33 * 0.04);
-  EXPECT_LT(Error(found.history, truth, 2), 3 * force.net.rms_deviation[2]);
-  EXPECT_LT(Error(found.history, truth, 0), 3 * force.net.rms_deviation[0]);
+  EXPECT_LT(NetForceError(found.history, truth, 1), 0.33 * 0.04);
+  EXPECT_LT(NetForceError(found.history, truth, 2), 3 * force.net.rms_deviation[2]);
+  EXPECT_LT(NetForceError(found.history, truth, 0), 3 * force.net.rms_deviation[0]);
   EXPECT_LT(force.net.rms_deviation[1], 0.25 * 0.04);
 }
 
