@@ -18,9 +18,11 @@ void SetThreadCount(int count);
 
 // Calls body(begin, end) for the consecutive blocks [k·block, (k+1)·block) of [0, count), in any
 // order and possibly at the same time. The blocks depend on `count` and `block` only; `block` must
-// be positive. A loop inside a body runs serially. If a body throws an exception, the loop ends
-// early and the exception is rethrown to the caller; if several bodies throw, that of the first
-// block is rethrown, as in a serial loop.
+// be positive. A loop inside a body uses the threads that have nothing else to do when it begins.
+// While a thread waits for the end of a loop, it may call bodies of loops inside that loop, so that
+// no body may need a lock that is held around the loop. If a body throws an exception, the loop
+// ends early and the exception is rethrown to the caller; if several bodies throw, that of the
+// first block is rethrown, as in a serial loop.
 void ParallelBlocks(int64_t count, int64_t block,
                     const std::function<void(int64_t begin, int64_t end)>& body);
 

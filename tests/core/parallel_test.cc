@@ -4,6 +4,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <mutex>
+#include <numeric>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -72,6 +75,116 @@ TEST(Parallel, RunsALoopInsideALoop) {
   ParallelFor(40, 1,
               [&](int64_t i) { ParallelFor(50, 1, [&](int64_t j) { ++visits[50 * i + j]; }); });
   for (const int count : visits) EXPECT_EQ(count, 1);
+}
+
+// Runs loops of two blocks until two threads are inside one of them at the same time, a hundred
+// loops at most. Returns the two threads, or none.
+std::set<std::thread::id> MeetInsideALoop() {
+  std::mutex mutex;
+  std::set<std::thread::id> inside, met;
+  std::atomic<bool> have_met = false;
+  for (int repeat = 0; repeat < 100 && !have_met; ++repeat) {
+    ParallelFor(2, 1, [&](int64_t) {
+      const std::thread::id own = std::this_thread::get_id();
+      for (int k = 0; k < 1000 && !have_met; ++k) {
+        {
+          const std::lock_guard lock(mutex);
+          inside.insert(own);
+          if (inside.size() == 2) {
+            met = inside;
+            have_met = true;
+          }
+        }
+        std::this_thread::yield();
+      }
+      const std::lock_guard lock(mutex);
+      inside.erase(own);
+    });
+  }
+  return met;
+}
+
+// One block of a loop contains loops. The caller, which has finished the other block and waits,
+// helps in these.
+TEST(Parallel, HelpsInsideALoopWhileItWaits) {
+  ThreadCountGuard guard;
+  SetThreadCount(2);
+  const std::thread::id caller = std::this_thread::get_id();
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  bool caller_helps = false;
+  while (!caller_helps && std::chrono::steady_clock::now() < end) {
+    std::atomic<bool> has_help = false;
+    ParallelFor(2, 1, [&](int64_t) {
+      if (std::this_thread::get_id() == caller) {
+        while (!has_help && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+        return;
+      }
+      has_help = true;
+      caller_helps = MeetInsideALoop().contains(caller);
+    });
+  }
+  EXPECT_TRUE(caller_helps);
+}
+
+// The helper has finished the other block, and helps the caller in loops inside its own block.
+TEST(Parallel, AThreadWithoutWorkHelpsInsideALoop) {
+  ThreadCountGuard guard;
+  SetThreadCount(2);
+  const std::thread::id caller = std::this_thread::get_id();
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  size_t met = 0;
+  while (met < 2 && std::chrono::steady_clock::now() < end) {
+    ParallelFor(2, 1, [&](int64_t i) {
+      if (i == 0 && std::this_thread::get_id() == caller) met = MeetInsideALoop().size();
+    });
+  }
+  EXPECT_EQ(met, 2u);
+}
+
+// Sums that are formed in three levels of loops, with bodies of unequal length.
+TEST(Parallel, NestedLoopsGiveTheSameWithAnyThreadCount) {
+  ThreadCountGuard guard;
+  std::vector<std::vector<double>> results;
+  for (const int threads : {1, 2, 3, 5, 2}) {
+    SetThreadCount(threads);
+    std::atomic<int> inside = 0, most = 0;
+    std::vector<double> sums(3 * 4, 0);
+    ParallelFor(3, 1, [&](int64_t i) {
+      ParallelFor(4, 1, [&](int64_t j) {
+        std::vector<double> parts(50, 0);
+        ParallelFor(50, 7, [&](int64_t k) {
+          const int now = ++inside;
+          for (int seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {
+          }
+          for (int64_t n = 0; n < 20 * (i + j + 1); ++n) std::this_thread::yield();
+          parts[k] = 1.0 / static_cast<double>(1 + k + 50 * (j + 4 * i));
+          --inside;
+        });
+        sums[4 * i + j] = std::accumulate(parts.begin(), parts.end(), 0.0);
+      });
+    });
+    results.push_back(sums);
+    EXPECT_LE(most, threads);
+    EXPECT_EQ(sums, results.front()) << threads;
+  }
+}
+
+TEST(Parallel, RethrowsFromALoopInsideALoop) {
+  ThreadCountGuard guard;
+  SetThreadCount(3);
+  for (int repeat = 0; repeat < 100; ++repeat) {
+    EXPECT_THROW(ParallelFor(2, 1,
+                             [](int64_t i) {
+                               ParallelFor(8, 1, [&](int64_t j) {
+                                 std::this_thread::yield();
+                                 if (i == 1 && j == 5) throw std::runtime_error("5");
+                               });
+                             }),
+                 std::runtime_error);
+  }
+  std::vector<int> visits(10, 0);
+  ParallelFor(10, 1, [&](int64_t i) { ++visits[i]; });
+  EXPECT_EQ(visits, std::vector<int>(10, 1));
 }
 
 TEST(Parallel, RunsLoopsOfSeveralCallersAtTheSameTime) {
