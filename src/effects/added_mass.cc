@@ -22,7 +22,7 @@ std::shared_ptr<const Eigen::VectorXd> AddedMass::Mass(const Body& body) const {
 
 double AddedMass::Size(const Body&) const { return parameters_[0]; }
 
-Eigen::VectorXd AddedMass::MassPerUnitBy(const Body&, int, const Eigen::VectorXd&) const {
+Eigen::VectorXd AddedMass::MassPerUnitDerivative(const Body&, int, const Eigen::VectorXd&) const {
   LOG(FATAL) << "all other parameters of this effect are settings";
 }
 
@@ -52,7 +52,7 @@ void AddedMass::AddParameterDerivative(const Kinematics& at, int parameter,
   if (parameter == 0) {
     AddScaledForce(at, 1, *mass, derivative);
   } else {
-    AddScaledForce(at, Size(at.body), MassPerUnitBy(at.body, parameter, *mass), derivative);
+    AddScaledForce(at, Size(at.body), MassPerUnitDerivative(at.body, parameter, *mass), derivative);
   }
 }
 

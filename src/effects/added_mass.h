@@ -42,8 +42,8 @@ class AddedMass : public Effect {
 
   // ∂μ/∂(parameter) at each node (n), for a parameter that is not a setting; `mass`: μ. The default
   // is for classes all of whose other parameters are settings: it must not be called (LOG(FATAL)).
-  virtual Eigen::VectorXd MassPerUnitBy(const Body& body, int parameter,
-                                        const Eigen::VectorXd& mass) const;
+  virtual Eigen::VectorXd MassPerUnitDerivative(const Body& body, int parameter,
+                                                const Eigen::VectorXd& mass) const;
 
   // The size θ on a body: the first parameter, unless its zero depends on the body.
   virtual double Size(const Body& body) const;

@@ -37,10 +37,10 @@ class AttachedMassEffect final : public CloneableEffect<AttachedMassEffect, Adde
                       NodeVolumes(body));
   }
 
-  Eigen::VectorXd MassPerUnitBy(const Body& body, int parameter,
-                                const Eigen::VectorXd& mass) const override {
+  Eigen::VectorXd MassPerUnitDerivative(const Body& body, int parameter,
+                                        const Eigen::VectorXd& mass) const override {
     CHECK(parameter >= kCentre && parameter < kRadius) << "the others are settings";
-    return BumpSharesByCentre(parameter - kCentre, parameters_[kRadius], body.mesh.nodes, mass);
+    return BumpShareDerivatives(parameter - kCentre, parameters_[kRadius], body.mesh.nodes, mass);
   }
 
   static EffectCard MakeCard() {

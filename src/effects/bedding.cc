@@ -95,8 +95,8 @@ std::shared_ptr<const Eigen::VectorXd> BeddedPart::Areas(const Body& body,
   });
 }
 
-Eigen::VectorXd BeddedPart::AreasBy(const Body& body, const std::string& type,
-                                    int parameter) const {
+Eigen::VectorXd BeddedPart::AreaDerivatives(const Body& body, const std::string& type,
+                                            int parameter) const {
   CHECK((parameter >= kPoint && parameter < kNormal) || parameter == kRadius)
       << "the others are settings";
   if (Radius() == 0) return Eigen::VectorXd::Zero(body.NodeCount());

@@ -42,7 +42,7 @@ class BeddedPart {
   // ∂(w_i A_i)/∂(parameter), m, for a component of c or for r: through w, at fixed A_i. It is zero
   // where the part does not fade. (The plane of the half-space moves along with c. Nodes that it
   // crosses change their A_i by jumps, which no derivative shows: to fit a place, name a side.)
-  Eigen::VectorXd AreasBy(const Body& body, const std::string& type, int parameter) const;
+  Eigen::VectorXd AreaDerivatives(const Body& body, const std::string& type, int parameter) const;
 
  private:
   Eigen::Vector3d Point() const { return values_.segment<3>(kPoint); }

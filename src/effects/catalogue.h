@@ -26,6 +26,11 @@ struct CatalogueEntry {
   };
   const EffectCard* card = nullptr;
   Kind kind = Kind::kEffect;
+
+  // An effect that its parameter values describe in full has the next two functions. An effect that
+  // has more than these, such as an expression, and therefore a card of its own of the same type as
+  // `card`, has the two after them. The others are null: `make != nullptr` tells which it is.
+  //
   // Makes the effect from its parameter values.
   std::shared_ptr<const Effect> (*make)(const Eigen::VectorXd& parameters) = nullptr;
   // Reads the parameter values of a YAML mapping. A parameter that the mapping omits may be taken
@@ -33,11 +38,10 @@ struct CatalogueEntry {
   // the model in m/s² (nothing: the model has none).
   Eigen::VectorXd (*read)(const EffectCard& card, const Config& config, const Effect* material,
                           const std::optional<Eigen::Vector3d>& gravity) = nullptr;
-  // Replaces `make` and `read`, which are null then, for an effect that has more than its parameter
-  // values and therefore a card of its own, of the same type as `card`.
+  // Makes the effect from the YAML mapping that describes it, and writes that mapping.
   std::shared_ptr<const Effect> (*make_from_yaml)(const Config& config) = nullptr;
-  // For such an effect: the YAML mapping that describes it.
   std::string (*format)(const Effect& effect) = nullptr;
+
   // Whether the effect is a law that the user writes: a diagnosis tries those that an experiment
   // lists as candidates, each under its own name.
   bool is_own_law = false;

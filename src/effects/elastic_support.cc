@@ -50,8 +50,8 @@ class ElasticSupportEffect final : public CloneableEffect<ElasticSupportEffect> 
     if (parameter == kModulus)
       AddForceOf(*Areas(at.body), 1, at, derivative);
     else
-      AddForceOf(part_.AreasBy(at.body, TheCard().type, parameter - kPart), parameters_[kModulus],
-                 at, derivative);
+      AddForceOf(part_.AreaDerivatives(at.body, TheCard().type, parameter - kPart),
+                 parameters_[kModulus], at, derivative);
   }
 
   std::optional<double> Energy(const Kinematics& at) const override {

@@ -9,13 +9,14 @@
 // Young's modulus 3μ, ε_y the stretch at which a bar yields and m ε_y its yield stress. Yield is
 // stated as a strain so that E_p does not depend on m.
 //
-// Radial return at the end of the step (Wilkins 1964); its incremental potential is quadratic up to
-// yield and linear beyond. The law does not depend on the rate, so statics is a step like any
+// Radial return at the end of the step (radial_return.h); its incremental potential is quadratic up
+// to yield and linear beyond. The law does not depend on the rate, so statics is a step like any
 // other.
 #include <cmath>
 
 #include "effects/catalogue.h"
 #include "effects/elastic_parameters.h"
+#include "effects/radial_return.h"
 #include "fem/memory_branch.h"
 
 namespace lacuna {
@@ -41,38 +42,38 @@ class ElastoplasticLaw {
   }
 
   KelvinVector Stress(const KelvinVector& strain, const State& plastic) const {
-    return kTwoMu * Returned(Trial(strain, plastic));
+    return kTwoMu * RadialReturn(Trial(strain, plastic), radius_);
   }
 
   KelvinMatrix Moduli(const KelvinVector& strain, const State& plastic) const {
     const KelvinVector trial = Trial(strain, plastic);
     KelvinMatrix moduli;
     for (int k = 0; k < 6; ++k)
-      moduli.col(k) = kTwoMu * ReturnedBy(trial, Deviator(KelvinVector::Unit(k)));
+      moduli.col(k) = kTwoMu * RadialReturnChange(trial, radius_, Deviator(KelvinVector::Unit(k)));
     return moduli;
   }
 
   KelvinVector StressDerivative(const KelvinVector& strain, const State& plastic,
                                 int /*parameter: yield_strain*/) const {
-    return kTwoMu * ReturnedByYield(Trial(strain, plastic));
+    return kTwoMu * ElasticDerivative(Trial(strain, plastic));
   }
 
   State AtEnd(const KelvinVector& strain, const State& plastic) const {
-    return Deviator(strain) - Returned(Trial(strain, plastic));
+    return Deviator(strain) - RadialReturn(Trial(strain, plastic), radius_);
   }
 
-  KelvinVector StressByState(const KelvinVector& strain, const State& plastic,
-                             const State& change) const {
-    return -kTwoMu * ReturnedBy(Trial(strain, plastic), change);
+  KelvinVector StressChange(const KelvinVector& strain, const State& plastic,
+                            const State& change) const {
+    return -kTwoMu * RadialReturnChange(Trial(strain, plastic), radius_, change);
   }
-  State AtEndBy(const KelvinVector& strain, const State& plastic, const KelvinVector& strain_change,
-                const State& change) const {
+  State AtEndChange(const KelvinVector& strain, const State& plastic,
+                    const KelvinVector& strain_change, const State& change) const {
     return Deviator(strain_change) -
-           ReturnedBy(Trial(strain, plastic), Trial(strain_change, change));
+           RadialReturnChange(Trial(strain, plastic), radius_, Trial(strain_change, change));
   }
-  State AtEndByParameter(const KelvinVector& strain, const State& plastic,
-                         int /*parameter: yield_strain*/) const {
-    return -ReturnedByYield(Trial(strain, plastic));
+  State AtEndDerivative(const KelvinVector& strain, const State& plastic,
+                        int /*parameter: yield_strain*/) const {
+    return -ElasticDerivative(Trial(strain, plastic));
   }
 
  private:
@@ -131,19 +132,8 @@ class ElastoplasticLaw {
     return Deviator(strain) - plastic;
   }
 
-  // The nearest elastic strain within the limit.
-  KelvinVector Returned(const KelvinVector& trial) const {
-    const double norm = trial.norm();
-    return norm <= radius_ ? trial : KelvinVector((radius_ / norm) * trial);
-  }
-  // Its change where the trial strain changes, and where the yield strain does.
-  KelvinVector ReturnedBy(const KelvinVector& trial, const KelvinVector& change) const {
-    const double norm = trial.norm();
-    if (norm <= radius_) return change;
-    const KelvinVector direction = trial / norm;
-    return (radius_ / norm) * (change - direction.dot(change) * direction);
-  }
-  KelvinVector ReturnedByYield(const KelvinVector& trial) const {
+  // The derivative of the elastic strain at the end of the step with respect to the yield strain.
+  KelvinVector ElasticDerivative(const KelvinVector& trial) const {
     const double norm = trial.norm();
     if (norm <= radius_) return KelvinVector::Zero();
     return (kNormOfUnitStretch / norm) * trial;

@@ -104,8 +104,8 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
       AddTurned(at, *spread, spread->share, Eigen::Vector3d::Unit(parameter), derivative);
     } else {
       AddTurned(at, *spread,
-                BumpSharesByCentre(parameter - kCentre, parameters_[kRadius], at.body.point,
-                                   spread->share),
+                BumpShareDerivatives(parameter - kCentre, parameters_[kRadius], at.body.point,
+                                     spread->share),
                 parameters_.head<3>(), derivative);
     }
   }

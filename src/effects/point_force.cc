@@ -56,8 +56,8 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
       AddShares(at, *shares, Eigen::Vector3d::Unit(parameter), derivative);
     } else {
       AddShares(at,
-                BumpSharesByCentre(parameter - kCentre, parameters_[kRadius], at.body.mesh.nodes,
-                                   *shares),
+                BumpShareDerivatives(parameter - kCentre, parameters_[kRadius], at.body.mesh.nodes,
+                                     *shares),
                 parameters_.head<3>(), derivative);
     }
   }

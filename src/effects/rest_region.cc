@@ -35,8 +35,8 @@ Eigen::VectorXd BumpShares(const Eigen::Vector3d& centre, double radius,
   return share / share.sum();
 }
 
-Eigen::VectorXd BumpSharesByCentre(int axis, double radius, const Eigen::Matrix3Xd& places,
-                                   const Eigen::VectorXd& shares) {
+Eigen::VectorXd BumpShareDerivatives(int axis, double radius, const Eigen::Matrix3Xd& places,
+                                     const Eigen::VectorXd& shares) {
   const Eigen::VectorXd along = places.row(axis);
   return shares.array() * (along.array() - shares.dot(along)) / (radius * radius);
 }

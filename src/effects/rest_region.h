@@ -22,8 +22,8 @@ Eigen::VectorXd BumpShares(const Eigen::Vector3d& centre, double radius,
 
 // The derivative of those shares with respect to a coordinate of c: s_i (X_i − Σ_j s_j X_j)/r²,
 // 1/m.
-Eigen::VectorXd BumpSharesByCentre(int axis, double radius, const Eigen::Matrix3Xd& places,
-                                   const Eigen::VectorXd& shares);
+Eigen::VectorXd BumpShareDerivatives(int axis, double radius, const Eigen::Matrix3Xd& places,
+                                     const Eigen::VectorXd& shares);
 
 // Volume around each node (n), m³: its lumped mass over the density.
 Eigen::VectorXd NodeVolumes(const Body& body);

@@ -7,12 +7,13 @@
 // would, and the derivative with respect to k at 0 exists. Nodes that a grip holds are not
 // affected. A support that the body may leave is a contact (plane_contact.cc).
 //
-// The slip at the end of a step follows from a radial return (M. L. Wilkins 1964), whose
-// incremental potential is convex: quadratic up to the limit and linear beyond it.
+// The slip at the end of a step follows from a radial return (radial_return.h), whose incremental
+// potential is convex: quadratic up to the limit and linear beyond it.
 #include <glog/logging.h>
 
 #include "effects/bedding.h"
 #include "effects/catalogue.h"
+#include "effects/radial_return.h"
 #include "fem/cloneable_effect.h"
 
 namespace lacuna {
@@ -47,16 +48,17 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
                    BlockMatrix* tangent) const override {
     ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
       tangent->Block(tangent->pattern().diagonal[node]) -=
-          weights.position * Modulus() * area * HeldBy(stretch);
+          weights.position * Modulus() * area * HeldDerivative(stretch);
     });
   }
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
     if (parameter >= kPart) {
-      const Eigen::VectorXd by = part_.AreasBy(at.body, TheCard().type, parameter - kPart);
+      const Eigen::VectorXd area_derivatives =
+          part_.AreaDerivatives(at.body, TheCard().type, parameter - kPart);
       ForEachSpring(at, [&](int node, double, const Eigen::Vector3d& stretch) {
-        derivative->segment<3>(3 * node) -= Modulus() * by[node] * Held(stretch);
+        derivative->segment<3>(3 * node) -= Modulus() * area_derivatives[node] * Held(stretch);
       });
       return;
     }
@@ -64,7 +66,7 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
       if (parameter == kModulus)
         derivative->segment<3>(3 * node) -= area * Held(stretch);
       else
-        derivative->segment<3>(3 * node) -= Modulus() * area * HeldByDistance(stretch);
+        derivative->segment<3>(3 * node) -= Modulus() * area * HeldDistanceDerivative(stretch);
     });
   }
 
@@ -96,13 +98,13 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
                            Eigen::Ref<Eigen::MatrixXd> forces) const override {
     ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
       forces.middleRows<3>(3 * node) +=
-          Modulus() * area * HeldBy(stretch) * changes.middleRows<3>(3 * node);
+          Modulus() * area * HeldDerivative(stretch) * changes.middleRows<3>(3 * node);
     });
   }
   void AdvanceStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& moved,
                                Eigen::Ref<Eigen::MatrixXd> changes) const override {
     ForEachSpring(at, [&](int node, double, const Eigen::Vector3d& stretch) {
-      const Eigen::Matrix3d slides = Eigen::Matrix3d::Identity() - HeldBy(stretch);
+      const Eigen::Matrix3d slides = Eigen::Matrix3d::Identity() - HeldDerivative(stretch);
       changes.middleRows<3>(3 * node) +=
           slides * (moved.middleRows<3>(3 * node) - changes.middleRows<3>(3 * node));
     });
@@ -112,7 +114,7 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
                            Eigen::Ref<Eigen::VectorXd> change) const override {
     if (parameter != kSlipDistance) return;
     ForEachSpring(at, [&](int node, double, const Eigen::Vector3d& stretch) {
-      change.segment<3>(3 * node) -= HeldByDistance(stretch);
+      change.segment<3>(3 * node) -= HeldDistanceDerivative(stretch);
     });
   }
 
@@ -163,19 +165,14 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
   double Modulus() const { return parameters_[kModulus]; }
   double SlipDistance() const { return parameters_[kSlipDistance]; }
 
-  // The nearest stretch within the limit.
+  // The stretch that the spring keeps, with its derivatives with respect to the stretch and to d.
   Eigen::Vector3d Held(const Eigen::Vector3d& stretch) const {
-    const double length = stretch.norm(), limit = SlipDistance();
-    return length <= limit ? stretch : Eigen::Vector3d(limit / length * stretch);
+    return RadialReturn(stretch, SlipDistance());
   }
-  // Its derivatives by the stretch and by the limit.
-  Eigen::Matrix3d HeldBy(const Eigen::Vector3d& stretch) const {
-    const double length = stretch.norm(), limit = SlipDistance();
-    if (length <= limit) return Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d direction = stretch / length;
-    return limit / length * (Eigen::Matrix3d::Identity() - direction * direction.transpose());
+  Eigen::Matrix3d HeldDerivative(const Eigen::Vector3d& stretch) const {
+    return RadialReturnDerivative(stretch, SlipDistance());
   }
-  Eigen::Vector3d HeldByDistance(const Eigen::Vector3d& stretch) const {
+  Eigen::Vector3d HeldDistanceDerivative(const Eigen::Vector3d& stretch) const {
     return stretch.norm() <= SlipDistance() ? Eigen::Vector3d(0, 0, 0) : stretch.normalized();
   }
 

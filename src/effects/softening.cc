@@ -66,19 +66,19 @@ class SofteningLaw {
     return State(std::max(state[0], Norm(strain)));
   }
 
-  KelvinVector StressByState(const KelvinVector& strain, const State& state,
-                             const State& change) const {
+  KelvinVector StressChange(const KelvinVector& strain, const State& state,
+                            const State& change) const {
     if (Norm(strain) > state[0]) return KelvinVector::Zero();
     const double g = Remaining(state[0]);
     return (-g * g / softening_strain_ * change[0]) * moduli_ * strain;
   }
-  State AtEndBy(const KelvinVector& strain, const State& state, const KelvinVector& strain_change,
-                const State& change) const {
+  State AtEndChange(const KelvinVector& strain, const State& state,
+                    const KelvinVector& strain_change, const State& change) const {
     const double now = Norm(strain);
     return now > state[0] ? State(strain_change.dot(moduli_ * strain) / now) : change;
   }
-  State AtEndByParameter(const KelvinVector& /*strain*/, const State& /*state*/,
-                         int /*parameter*/) const {
+  State AtEndDerivative(const KelvinVector& /*strain*/, const State& /*state*/,
+                        int /*parameter*/) const {
     return State::Zero();
   }
 

@@ -6,8 +6,9 @@
 #include "effects/elastic_parameters.h"
 #include "effects/standard_cards.h"
 #include "fem/cloneable_effect.h"
-#include "fem/element_kinematics.h"
+#include "fem/deformation_rates.h"
 #include "fem/lame_constants.h"
+#include "fem/point_integrals.h"
 
 namespace lacuna {
 namespace {
@@ -19,6 +20,12 @@ Eigen::Matrix3d ViscousStress(const LameConstants& viscosity, const Eigen::Matri
   Eigen::Matrix3d stress = viscosity.mu * (product + product.transpose());
   stress.diagonal().array() += viscosity.lambda * product.trace();
   return stress;
+}
+
+// P = F S
+Eigen::Matrix3d Stress(const LameConstants& viscosity, const Eigen::Matrix3d& F,
+                       const Eigen::Matrix3d& rate) {
+  return F * ViscousStress(viscosity, F, rate);
 }
 
 // Stiffness-proportional damping, the second term of Rayleigh damping, for large rotations and
@@ -61,27 +68,27 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
   bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
     if (IsAtRest(at)) return true;
     const LameConstants viscosity = Viscosity();
-    WithNodesPerElement(at.body, [&](auto nodes) {
-      ForEachElement(*at.body.schedule, [&](int element) {
-        ForEachViscousStress<decltype(nodes)::value>(
-            at, viscosity, element,
-            [&](int q, const Eigen::Matrix3d& P) { stress->middleCols<3>(3 * q) += P; });
-      });
-    });
+    AddPointStress<DeformationRates>(
+        at,
+        [&](const auto& points, int k) { return Stress(viscosity, points.F(k), points.Rate(k)); },
+        stress);
     return true;
   }
 
+  // ∂P/∂Ḟ is symmetric, ∂P/∂F is not. With `convexify` the latter is omitted, because it is smaller
+  // than ∂P/∂Ḟ by the strain increment of a step. The exact tangent needs both: a deformed body
+  // that rotates is free of viscous stress only if the skew part of ∂P/∂F is included.
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const override {
     const bool by_position = !convexify && weights.position != 0 && !IsAtRest(at);
     if (!by_position && weights.velocity == 0) return;
     const LameConstants viscosity = Viscosity();
-    AddMatrix<1>(
-        at,
-        [&](const Eigen::Matrix3d& F, const Eigen::Matrix3d& rate) {
-          StressTangent C = weights.velocity * RateTangent(viscosity, F, F);
+    AddStiffnessMatrix<DeformationRates>(
+        at, /*weight=*/1,
+        [&](const auto& points, int k) {
+          StressTangent C = weights.velocity * RateTangent(viscosity, points.F(k), points.F(k));
           if (by_position) {
-            const StressTangent D = PositionTangent(viscosity, F, rate);
+            const StressTangent D = PositionTangent(viscosity, points.F(k), points.Rate(k));
             C += 0.5 * weights.position * (D + D.transpose());
           }
           return C;
@@ -93,10 +100,10 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
                        BlockMatrix* tangent) const override {
     if (weights.position == 0 || beta_ == 0 || IsAtRest(at)) return false;
     const LameConstants viscosity = Viscosity();
-    AddMatrix<-1>(
-        at,
-        [&](const Eigen::Matrix3d& F, const Eigen::Matrix3d& rate) {
-          const StressTangent D = PositionTangent(viscosity, F, rate);
+    AddStiffnessMatrix<DeformationRates, -1>(
+        at, /*weight=*/1,
+        [&](const auto& points, int k) {
+          const StressTangent D = PositionTangent(viscosity, points.F(k), points.Rate(k));
           return StressTangent(0.5 * weights.position * (D - D.transpose()));
         },
         tangent);
@@ -172,67 +179,10 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
 
   static void AddViscousForce(const Kinematics& at, const LameConstants& viscosity,
                               Eigen::VectorXd* force) {
-    WithNodesPerElement(at.body, [&](auto nodes) {
-      AddViscousForce<decltype(nodes)::value>(at, viscosity, force);
-    });
-  }
-
-  template <int kNodes>
-  static void AddViscousForce(const Kinematics& at, const LameConstants& viscosity,
-                              Eigen::VectorXd* force) {
-    const Body& body = at.body;
-    ForEachElement(*body.schedule, [&](int element) {
-      constexpr int kPoints = QuadraturePoints<kNodes>();
-      Eigen::Matrix3d weighted[kPoints];
-      ForEachViscousStress<kNodes>(at, viscosity, element, [&](int q, const Eigen::Matrix3d& P) {
-        weighted[q - element * kPoints] = body.weight[q] * P;
-      });
-      AddPointForces<kNodes>(body, element, weighted, force);
-    });
-  }
-
-  // Calls visit(q, P) with the first Piola–Kirchhoff stress at the points of an element.
-  template <int kNodes, typename Visit>
-  static void ForEachViscousStress(const Kinematics& at, const LameConstants& viscosity,
-                                   int element, const Visit& visit) {
-    constexpr int kPoints = QuadraturePoints<kNodes>();
-    Eigen::Matrix3d F[kPoints], rate[kPoints];
-    FieldGradients<kNodes>(at.body, element, at.position, F);
-    FieldGradients<kNodes>(at.body, element, at.velocity, rate);
-    for (int p = 0; p < kPoints; ++p) {
-      const Eigen::Matrix3d P = F[p] * ViscousStress(viscosity, F[p], rate[p]);
-      visit(element * kPoints + p, P);
-    }
-  }
-
-  // Adds the matrix of the moduli C(F, Ḟ): its symmetric part, or with kMirror = −1 its
-  // skew-symmetric part. ∂P/∂Ḟ is symmetric, ∂P/∂F is not. With `convexify` the latter is omitted,
-  // because it is smaller than ∂P/∂Ḟ by the strain increment of a step. The exact tangent needs
-  // both: a deformed body that rotates is free of viscous stress only if the skew part of ∂P/∂F is
-  // included.
-  template <int kMirror, typename Moduli>
-  static void AddMatrix(const Kinematics& at, const Moduli& C, BlockMatrix* tangent) {
-    WithNodesPerElement(
-        at.body, [&](auto nodes) { AddMatrix<kMirror, decltype(nodes)::value>(at, C, tangent); });
-  }
-
-  template <int kMirror, int kNodes, typename Moduli>
-  static void AddMatrix(const Kinematics& at, const Moduli& C, BlockMatrix* tangent) {
-    const Body& body = at.body;
-    ForEachElement(*body.schedule, [&](int element) {
-      constexpr int kPoints = QuadraturePoints<kNodes>();
-      Eigen::Matrix3d F[kPoints], rate[kPoints];
-      FieldGradients<kNodes>(body, element, at.position, F);
-      FieldGradients<kNodes>(body, element, at.velocity, rate);
-      ElementStiffness<kNodes> stiffness;
-      stiffness.SetZero();
-      for (int p = 0; p < kPoints; ++p) {
-        const int q = element * kPoints + p;
-        AddStiffness<kNodes>(C(F[p], rate[p]), ShapeGradient<kNodes>(body, q), -body.weight[q],
-                             &stiffness);
-      }
-      ScatterStiffness<kNodes, kMirror>(body, element, stiffness, tangent);
-    });
+    AddNodalForces<DeformationRates>(
+        at,
+        [&](const auto& points, int k) { return Stress(viscosity, points.F(k), points.Rate(k)); },
+        force);
   }
 
   // ∂P/∂F at fixed Ḟ: the map δF ↦ δF S + F βC : sym(δFᵀ Ḟ).

@@ -60,7 +60,7 @@ class StrainStiffeningLaw {
   }
 
   Eigen::Matrix3d Stress(const Eigen::Matrix3d& F, const MaterialPoint& /*at*/) const {
-    return 2 * modulus_ * Invariant(F) * InvariantByF(F, Cofactor(F));
+    return 2 * modulus_ * Invariant(F) * InvariantDerivative(F, Cofactor(F));
   }
 
   // 2c (∂I/∂F ⊗ ∂I/∂F + I ∂²I/∂F²)
@@ -68,20 +68,20 @@ class StrainStiffeningLaw {
                         bool convexify) const {
     const double I = Invariant(F);
     const Eigen::Matrix3d cofactor = Cofactor(F);
-    const Eigen::Matrix3d slope = InvariantByF(F, cofactor);
+    const Eigen::Matrix3d slope = InvariantDerivative(F, cofactor);
     const Eigen::Map<const Eigen::Matrix<double, 9, 1>> c(cofactor.data());
     const Eigen::Map<const Eigen::Matrix<double, 9, 1>> p(slope.data());
     StressTangent tangent = 2 * modulus_ * p * p.transpose();
     tangent += 2 * modulus_ * I * kVolume * c * c.transpose();
     tangent.diagonal().array() += 4 * modulus_ * I;
-    AddCofactorDerivative(F, 2 * modulus_ * I * ByVolume(F.determinant()), &tangent);
+    AddCofactorDerivative(F, 2 * modulus_ * I * VolumeDerivative(F.determinant()), &tangent);
     if (!convexify || IsPositiveSemidefinite(tangent)) return tangent;
     return Projected(F, I);
   }
 
   Eigen::Matrix3d StressDerivative(const Eigen::Matrix3d& F, const MaterialPoint& /*at*/,
                                    int /*parameter*/) const {
-    return 2 * Invariant(F) * InvariantByF(F, Cofactor(F));
+    return 2 * Invariant(F) * InvariantDerivative(F, Cofactor(F));
   }
 
  private:
@@ -93,23 +93,25 @@ class StrainStiffeningLaw {
   }
 
   // ∂I/∂J at fixed F:F.
-  static double ByVolume(double J) { return kVolume * (J - 1) - 2; }
+  static double VolumeDerivative(double J) { return kVolume * (J - 1) - 2; }
 
-  static Eigen::Matrix3d InvariantByF(const Eigen::Matrix3d& F, const Eigen::Matrix3d& cofactor) {
-    return 2 * F + ByVolume(F.col(0).dot(cofactor.col(0))) * cofactor;
+  static Eigen::Matrix3d InvariantDerivative(const Eigen::Matrix3d& F,
+                                             const Eigen::Matrix3d& cofactor) {
+    return 2 * F + VolumeDerivative(F.col(0).dot(cofactor.col(0))) * cofactor;
   }
 
   StressTangent Projected(const Eigen::Matrix3d& F, double I) const {
     const SignedSvd axes = ComputeSignedSvd(F);
     const Eigen::Vector3d& s = axes.stretch;
-    const double by_volume = ByVolume(s.prod());
+    const double volume_derivative = VolumeDerivative(s.prod());
     const Eigen::Vector3d slope =
-        2 * s + by_volume * Eigen::Vector3d(s[1] * s[2], s[2] * s[0], s[0] * s[1]);  // ∂I/∂s
+        2 * s +
+        volume_derivative * Eigen::Vector3d(s[1] * s[2], s[2] * s[0], s[0] * s[1]);  // ∂I/∂s
     const double by_invariant = 2 * modulus_ * I;
     PrincipalTangent principal = PrincipalTangent::Zero();
     principal.stretch = 2 * modulus_ * slope * slope.transpose();
     principal.AddIsotropic(2 * by_invariant);
-    principal.AddVolumetric(s, by_invariant * by_volume, by_invariant * kVolume);
+    principal.AddVolumetric(s, by_invariant * volume_derivative, by_invariant * kVolume);
     return ProjectedTangent(axes, principal);
   }
 

@@ -43,8 +43,8 @@ class ViscoelasticLaw {
     const double steps = time_step / parameters[kRelaxationTime];
     decay_ = std::exp(-steps);
     gain_ = -std::expm1(-steps) / steps;
-    decay_by_time_ = decay_ * steps / parameters[kRelaxationTime];
-    gain_by_time_ = (gain_ - decay_) / parameters[kRelaxationTime];
+    decay_derivative_ = decay_ * steps / parameters[kRelaxationTime];
+    gain_derivative_ = (gain_ - decay_) / parameters[kRelaxationTime];
   }
 
   double Potential(const KelvinVector& strain, const State& state) const {
@@ -62,24 +62,24 @@ class ViscoelasticLaw {
 
   KelvinVector StressDerivative(const KelvinVector& strain, const State& state,
                                 int /*parameter: relaxation_time*/) const {
-    return moduli_ * SpringStrainByTime(strain, state);
+    return moduli_ * SpringStrainDerivative(strain, state);
   }
 
   State AtEnd(const KelvinVector& strain, const State& state) const {
     return (State() << SpringStrain(strain, state), strain).finished();
   }
 
-  KelvinVector StressByState(const KelvinVector& /*strain*/, const State& /*state*/,
-                             const State& change) const {
+  KelvinVector StressChange(const KelvinVector& /*strain*/, const State& /*state*/,
+                            const State& change) const {
     return moduli_ * SpringStrain(KelvinVector::Zero(), change);
   }
-  State AtEndBy(const KelvinVector& /*strain*/, const State& /*state*/,
-                const KelvinVector& strain_change, const State& change) const {
+  State AtEndChange(const KelvinVector& /*strain*/, const State& /*state*/,
+                    const KelvinVector& strain_change, const State& change) const {
     return AtEnd(strain_change, change);  // which is linear
   }
-  State AtEndByParameter(const KelvinVector& strain, const State& state,
-                         int /*parameter: relaxation_time*/) const {
-    return (State() << SpringStrainByTime(strain, state), KelvinVector::Zero()).finished();
+  State AtEndDerivative(const KelvinVector& strain, const State& state,
+                        int /*parameter: relaxation_time*/) const {
+    return (State() << SpringStrainDerivative(strain, state), KelvinVector::Zero()).finished();
   }
 
  private:
@@ -134,14 +134,14 @@ class ViscoelasticLaw {
     return decay_ * state.head<6>() + gain_ * (strain - state.tail<6>());
   }
 
-  // Its derivative by the relaxation time, 1/s.
-  KelvinVector SpringStrainByTime(const KelvinVector& strain, const State& state) const {
-    return decay_by_time_ * state.head<6>() + gain_by_time_ * (strain - state.tail<6>());
+  // Its derivative with respect to the relaxation time, 1/s.
+  KelvinVector SpringStrainDerivative(const KelvinVector& strain, const State& state) const {
+    return decay_derivative_ * state.head<6>() + gain_derivative_ * (strain - state.tail<6>());
   }
 
-  KelvinMatrix moduli_;                          // C for m = 1
-  double decay_ = 0, gain_ = 0;                  // a, b
-  double decay_by_time_ = 0, gain_by_time_ = 0;  // ∂a/∂τ, ∂b/∂τ, 1/s
+  KelvinMatrix moduli_;                                // C for m = 1
+  double decay_ = 0, gain_ = 0;                        // a, b
+  double decay_derivative_ = 0, gain_derivative_ = 0;  // ∂a/∂τ, ∂b/∂τ, 1/s
 };
 
 }  // namespace

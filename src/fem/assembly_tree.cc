@@ -58,6 +58,7 @@ std::vector<int> EliminationTree(const Graph& graph) {
   return parent;
 }
 
+// The children of each node of a tree, ascending.
 std::vector<std::vector<int>> Children(const std::vector<int>& parent) {
   std::vector<std::vector<int>> children(parent.size());
   for (size_t i = 0; i < parent.size(); ++i) {
@@ -66,6 +67,7 @@ std::vector<std::vector<int>> Children(const std::vector<int>& parent) {
   return children;
 }
 
+// The nodes of a forest with each node after all of its descendants.
 std::vector<int> Postorder(const std::vector<int>& parent) {
   const std::vector<std::vector<int>> children = Children(parent);
   std::vector<int> postorder;
@@ -86,6 +88,7 @@ std::vector<int> Postorder(const std::vector<int>& parent) {
   return postorder;
 }
 
+// The order in which the k-th node is number permutation[k] of `order`.
 EliminationOrder Permuted(const EliminationOrder& order, const std::vector<int>& permutation) {
   EliminationOrder permuted = order;
   for (size_t k = 0; k < permutation.size(); ++k) {
@@ -115,13 +118,17 @@ std::vector<int> ColumnCounts(const Graph& graph, const std::vector<int>& parent
 // Supernodes as sets of columns of a postordered elimination tree.
 struct Partition {
   std::vector<int> supernode_of;  // supernode of each column
-  std::vector<int> parent;        // parent of each supernode
+  std::vector<int> parent;        // parent of each supernode; −1 for a root
+  std::vector<int> columns;       // number of columns of each supernode
 };
 
+// Entries of the columns of a supernode, of which the upper `columns` rows form a triangle.
 double TrapezoidEntries(double columns, double rows) {
   return 0.5 * columns * (columns + 1) + columns * rows;
 }
 
+// Whether a merged supernode with this number of columns, and of entries stored and not zero, is
+// allowed by kMergeRules.
 bool WorthMerging(double columns, double stored, double nonzero) {
   for (const MergeRule& rule : kMergeRules) {
     if (columns <= rule.columns) return stored - nonzero <= rule.zeros * stored;
@@ -129,34 +136,39 @@ bool WorthMerging(double columns, double stored, double nonzero) {
   return false;
 }
 
-// Finds the fundamental supernodes and merges them bottom-up (Ashcraft & Grimes 1989).
-Partition FindSupernodes(const std::vector<int>& parent, const std::vector<int>& count) {
+// The fundamental supernodes: the longest sequences of columns of which each is the parent of the
+// one before, with the same rows except for itself. `count` holds the rows below each column.
+Partition FundamentalSupernodes(const std::vector<int>& parent, const std::vector<int>& count) {
   const int n = static_cast<int>(parent.size());
   Partition partition;
   partition.supernode_of.resize(n);
-  std::vector<int> columns, rows;
   for (int j = 0; j < n; ++j) {
     const bool continues = j > 0 && parent[j - 1] == j && count[j - 1] == count[j] + 1;
-    if (!continues) {
-      columns.push_back(0);
-      rows.push_back(0);
-    }
-    partition.supernode_of[j] = static_cast<int>(columns.size()) - 1;
-    ++columns.back();
-    rows.back() = count[j];
+    if (!continues) partition.columns.push_back(0);
+    partition.supernode_of[j] = static_cast<int>(partition.columns.size()) - 1;
+    ++partition.columns.back();
   }
-  const int supernodes = static_cast<int>(columns.size());
-  partition.parent.assign(supernodes, -1);
+  partition.parent.assign(partition.columns.size(), -1);
   for (int j = 0; j < n; ++j) {
     const int s = partition.supernode_of[j];
     if (parent[j] >= 0 && partition.supernode_of[parent[j]] != s) {
       partition.parent[s] = partition.supernode_of[parent[j]];
     }
   }
+  return partition;
+}
 
-  DisjointSets merged_into(static_cast<size_t>(supernodes));  // represented by their topmost member
+// Decides bottom-up which fundamental supernodes are merged into their parents (Ashcraft & Grimes
+// 1989). Each set of merged supernodes is represented by its topmost member. `count` holds the rows
+// below each column.
+DisjointSets MergedSupernodes(const Partition& partition, const std::vector<int>& count) {
+  const int supernodes = static_cast<int>(partition.parent.size());
+  std::vector<int> rows(supernodes);  // below all columns of a supernode, i.e. below its last one
+  for (size_t j = 0; j < count.size(); ++j) rows[partition.supernode_of[j]] = count[j];
+  std::vector<int> columns = partition.columns;
   std::vector<double> nonzero(supernodes);
   for (int s = 0; s < supernodes; ++s) nonzero[s] = TrapezoidEntries(columns[s], rows[s]);
+  DisjointSets merged_into(static_cast<size_t>(supernodes));
   for (int child = 0; child < supernodes; ++child) {
     const int p = partition.parent[child];
     if (p < 0) continue;
@@ -167,23 +179,35 @@ Partition FindSupernodes(const std::vector<int>& parent, const std::vector<int>&
     columns[p] += columns[child];
     nonzero[p] = entries;
   }
-
-  std::vector<int> number(supernodes, -1);
-  int kept = 0;
-  for (int s = 0; s < supernodes; ++s) {
-    if (merged_into.Find(s) == s) number[s] = kept++;
-  }
-  std::vector<int> kept_parent(kept, -1);
-  for (int s = 0; s < supernodes; ++s) {
-    if (merged_into.Find(s) != s || partition.parent[s] < 0) continue;
-    kept_parent[number[s]] = number[merged_into.Find(partition.parent[s])];
-  }
-  for (int& s : partition.supernode_of) s = number[merged_into.Find(s)];
-  partition.parent = std::move(kept_parent);
-  return partition;
+  return merged_into;
 }
 
-// The update rows of a supernode: later neighbours of its columns, and update rows of its children.
+// The fundamental supernodes after merging, in the order of their topmost members.
+Partition FindSupernodes(const std::vector<int>& parent, const std::vector<int>& count) {
+  const Partition fundamental = FundamentalSupernodes(parent, count);
+  DisjointSets merged_into = MergedSupernodes(fundamental, count);
+  const int supernodes = static_cast<int>(fundamental.parent.size());
+  Partition merged;
+  std::vector<int> number(supernodes, -1);
+  for (int s = 0; s < supernodes; ++s) {
+    if (merged_into.Find(s) != s) continue;
+    number[s] = static_cast<int>(merged.columns.size());
+    merged.columns.push_back(0);
+  }
+  merged.parent.assign(merged.columns.size(), -1);
+  for (int s = 0; s < supernodes; ++s) {
+    const int own = number[merged_into.Find(s)];
+    merged.columns[own] += fundamental.columns[s];
+    if (number[s] >= 0 && fundamental.parent[s] >= 0)
+      merged.parent[own] = number[merged_into.Find(fundamental.parent[s])];
+  }
+  for (const int s : fundamental.supernode_of)
+    merged.supernode_of.push_back(number[merged_into.Find(s)]);
+  return merged;
+}
+
+// Sets the update rows of all supernodes. Those of a supernode are the later neighbours of its
+// columns and the update rows of its children that are not among its columns.
 void FindRows(const Graph& graph, AssemblyTree* tree) {
   const int supernodes = tree->SupernodeCount();
   std::vector<int> seen_by(tree->order.FreeNodes(), -1);
@@ -206,6 +230,7 @@ void FindRows(const Graph& graph, AssemblyTree* tree) {
   }
 }
 
+// The runs of the update rows of supernode s in the front of its parent; none for a root.
 std::vector<RowRun> RunsIntoParent(const AssemblyTree& tree, int s) {
   std::vector<RowRun> runs;
   const int p = tree.parent[s];
@@ -227,16 +252,10 @@ std::vector<RowRun> RunsIntoParent(const AssemblyTree& tree, int s) {
   return runs;
 }
 
-}  // namespace
-
-AssemblyTree MakeAssemblyTree(const BlockPattern& pattern, const EliminationOrder& order) {
-  EliminationOrder postordered =
-      Permuted(order, Postorder(EliminationTree(FreeGraph(pattern, order))));
-  Graph graph = FreeGraph(pattern, postordered);
-  const std::vector<int> column_parent = EliminationTree(graph);
-  const Partition partition = FindSupernodes(column_parent, ColumnCounts(graph, column_parent));
-
-  // After merging, the columns of a supernode are no longer consecutive; reorder them.
+// The supernodes of a partition in postorder, with their columns made consecutive, which they no
+// longer are after merging. `order` is that of the columns of the partition. Update rows and runs
+// are not set.
+AssemblyTree PostorderedTree(const Partition& partition, const EliminationOrder& order) {
   const std::vector<int> supernode_order = Postorder(partition.parent);
   const int supernodes = static_cast<int>(supernode_order.size());
   std::vector<int> number(supernodes);
@@ -247,19 +266,30 @@ AssemblyTree MakeAssemblyTree(const BlockPattern& pattern, const EliminationOrde
   tree.column_begin.assign(supernodes + 1, 0);
   for (int s = 0; s < supernodes; ++s) {
     if (partition.parent[s] >= 0) tree.parent[number[s]] = number[partition.parent[s]];
+    tree.column_begin[number[s] + 1] = partition.columns[s];
   }
   tree.children = Children(tree.parent);
-  for (const int s : partition.supernode_of) ++tree.column_begin[number[s] + 1];
   std::partial_sum(tree.column_begin.begin(), tree.column_begin.end(), tree.column_begin.begin());
   std::vector<int> next(tree.column_begin.begin(), tree.column_begin.end() - 1);
   std::vector<int> gathered(partition.supernode_of.size());
   for (size_t j = 0; j < gathered.size(); ++j) {
     gathered[next[number[partition.supernode_of[j]]]++] = static_cast<int>(j);
   }
-  tree.order = Permuted(postordered, gathered);
+  tree.order = Permuted(order, gathered);
+  return tree;
+}
 
+}  // namespace
+
+AssemblyTree MakeAssemblyTree(const BlockPattern& pattern, const EliminationOrder& order) {
+  const EliminationOrder postordered =
+      Permuted(order, Postorder(EliminationTree(FreeGraph(pattern, order))));
+  const Graph graph = FreeGraph(pattern, postordered);
+  const std::vector<int> column_parent = EliminationTree(graph);
+  const Partition partition = FindSupernodes(column_parent, ColumnCounts(graph, column_parent));
+  AssemblyTree tree = PostorderedTree(partition, postordered);
   FindRows(FreeGraph(pattern, tree.order), &tree);
-  for (int s = 0; s < supernodes; ++s) tree.runs.push_back(RunsIntoParent(tree, s));
+  for (int s = 0; s < tree.SupernodeCount(); ++s) tree.runs.push_back(RunsIntoParent(tree, s));
   return tree;
 }
 

@@ -44,9 +44,9 @@ struct AssemblyTree {
 // Builds the tree for the free nodes of a pattern. `order` must contain each free node once.
 AssemblyTree MakeAssemblyTree(const BlockPattern& pattern, const EliminationOrder& order);
 
-// A cut through the tree for parallel elimination: independent subtrees, each eliminated by one
-// thread, and the supernodes above them, eliminated one after another. The cut does not depend on
-// the number of threads, so neither does the order of any summation.
+// A cut through the tree for parallel elimination: independent subtrees, each eliminated as one
+// task, and the supernodes above them, eliminated one after another. The cut does not depend on the
+// number of threads, so neither does the order of any summation.
 struct TreeCut {
   struct Subtree {
     int begin = 0, end = 0;  // consecutive supernodes, of which the last one is the root

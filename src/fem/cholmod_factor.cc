@@ -225,17 +225,4 @@ void CholmodFactor::Solve(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::Mat
 double CholmodFactor::flops() const { return implementation_->flops; }
 double CholmodFactor::entries() const { return implementation_->entries; }
 
-Eigen::MatrixXd SolveFree(const CholmodFactor& factor, const EliminationOrder& order,
-                          const HeldComponents& held, const Eigen::MatrixXd& B) {
-  Eigen::MatrixXd reduced(3 * order.FreeNodes(), B.cols()), solution;
-  for (int i = 0; i < order.FreeNodes(); ++i)
-    reduced.middleRows<3>(3 * i) = B.middleRows<3>(3 * order.node[i]);
-  factor.Solve(reduced, &solution);
-  Eigen::MatrixXd X = Eigen::MatrixXd::Zero(B.rows(), B.cols());
-  for (int i = 0; i < order.FreeNodes(); ++i)
-    X.middleRows<3>(3 * order.node[i]) = solution.middleRows<3>(3 * i);
-  held.ClearIn(X);
-  return X;
-}
-
 }  // namespace lacuna

@@ -12,7 +12,6 @@
 
 #include "fem/block_matrix.h"
 #include "fem/elimination_order.h"
-#include "fem/held_components.h"
 
 namespace lacuna {
 
@@ -40,12 +39,6 @@ class CholmodFactor {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
-
-// Solves A X = B for the free components, where `factor` is that of held.Decoupled(A) in the given
-// order. B and X have 3n rows, node-major; the held components of B are not used, and those of X
-// are 0. May be called by several threads at the same time.
-Eigen::MatrixXd SolveFree(const CholmodFactor& factor, const EliminationOrder& order,
-                          const HeldComponents& held, const Eigen::MatrixXd& B);
 
 }  // namespace lacuna
 

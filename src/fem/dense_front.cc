@@ -22,6 +22,20 @@ constexpr int kRowsPerTask = 1024;       // rows of a forward substitution per t
 // Columns that are processed in one pass over a vector; all blocks above are multiples of it.
 constexpr int kGroup = 8;
 
+// Replaces the lower triangle of a diagonal block by its Cholesky factor. `stride` separates its
+// columns.
+Pivots FactoriseDiagonal(int width, int stride, float* block) {
+  int info = 0;
+  spotrf_("L", &width, block, &stride, &info);
+  // LAPACK leaves the pivot at which it stopped in its place.
+  for (int j = 0; j < (info > 0 ? info : width); ++j) {
+    const float pivot = block[j + static_cast<int64_t>(j) * stride];
+    if (pivot < kCertainlyNegative) return Pivots::kNegative;
+    if (!(pivot > 0) || !std::isfinite(pivot)) return Pivots::kInDoubt;
+  }
+  return info == 0 ? Pivots::kPositive : Pivots::kInDoubt;
+}
+
 // update ← update − rows · rowsᵀ in the lower triangle, where `rows` is n × k.
 void SubtractOuterProduct(int n, int k, const float* rows, int rows_stride, float* update,
                           int update_stride) {
@@ -141,15 +155,8 @@ Pivots EliminateColumns(int m, int p, float* panel, float* update) {
   for (int begin = 0; begin < p; begin += kEliminationBlock) {
     const int end = std::min(p, begin + kEliminationBlock), width = end - begin;
     float* diagonal = panel + begin + static_cast<int64_t>(begin) * m;
-    int info = 0;
-    spotrf_("L", &width, diagonal, &m, &info);
-    // LAPACK leaves the pivot at which it stopped in its place.
-    for (int j = 0; j < (info > 0 ? info : width); ++j) {
-      const float pivot = diagonal[j + static_cast<int64_t>(j) * m];
-      if (pivot < kCertainlyNegative) return Pivots::kNegative;
-      if (!(pivot > 0) || !std::isfinite(pivot)) return Pivots::kInDoubt;
-    }
-    if (info != 0) return Pivots::kInDoubt;
+    const Pivots pivots = FactoriseDiagonal(width, m, diagonal);
+    if (pivots != Pivots::kPositive) return pivots;
     if (end == m) break;
     ParallelBlocks(m - end, kRowsPerTask, [&](int64_t first, int64_t last) {
       cblas_strsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,

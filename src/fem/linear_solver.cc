@@ -69,22 +69,46 @@ struct LinearSolver::Implementation {
         held(held_components),
         options(solver_options),
         order(NestedDissection(*pattern, held.whole_nodes())) {
-    if (options.method == LinearSolverOptions::Method::kKeptFactor) {
-      single_factor.emplace(*pattern, order);
-    }
+    if (KeepsFactors()) single_factor.emplace(*pattern, order);
   }
 
+  bool KeepsFactors() const { return options.method == LinearSolverOptions::Method::kKeptFactor; }
   bool Factorise(const BlockMatrix& coupled);
   bool FactoriseInDouble(const BlockMatrix& A);
   void ApplyFactor(const Eigen::VectorXd& r, Eigen::VectorXd* z);
+  void ApplySingleFactor(const Eigen::VectorXd& r, Eigen::VectorXd* z);
+  void ApplyDoubleFactor(const Eigen::VectorXd& r, Eigen::VectorXd* z);
+  // Qᵀ v and Q v for the part v of a nodal vector that belongs to a node, where Q is the rotation
+  // of the node since the factorisation.
+  Eigen::Vector3d RotatedBack(int node, const Eigen::VectorXd& nodal) const {
+    if (rotation.empty()) return nodal.segment<3>(3 * node);
+    return rotation[node].transpose() * nodal.segment<3>(3 * node);
+  }
+  Eigen::Vector3d RotatedForward(int node, const Eigen::Vector3d& value) const {
+    if (rotation.empty()) return value;
+    return rotation[node] * value;
+  }
   void MultiplyFree(const BlockMatrix& A, const Eigen::VectorXd& x, Eigen::VectorXd* y) const;
   void SetRotation(const std::vector<Eigen::Matrix3d>* rotations);
   void SetFactorRotations(const std::vector<Eigen::Matrix3d>* rotations);
   void CountSolve(double spent_before);
 
-  enum class Outcome { kConverged, kIndefinite, kTooManyIterations, kBrokenDown };
+  enum class Outcome { kConverged, kIndefinite, kTooManyIterations, kBrokenDown, kNoFactor };
+  // Preconditioned conjugate gradients from the current *x, whose residual is in `residual`, until
+  // ‖b − A x‖ is within the tolerance relative to `b_norm` = ‖b‖. With `may_renew` the iteration
+  // ends early where a new factor is expected to be cheaper.
   Outcome Iterate(const BlockMatrix& A, double b_norm, bool may_renew, Eigen::VectorXd* x,
                   LinearSolveSummary* summary);
+  // The same with the kept factor, which is rotated with the nodes.
+  Outcome IterateWithKeptFactor(const BlockMatrix& A, double b_norm,
+                                const std::vector<Eigen::Matrix3d>* rotations, Eigen::VectorXd* x,
+                                LinearSolveSummary* summary);
+  // The same with a new factor of A.
+  Outcome IterateWithNewFactor(const BlockMatrix& A, double b_norm,
+                               const std::vector<Eigen::Matrix3d>* rotations, Eigen::VectorXd* x,
+                               LinearSolveSummary* summary);
+  static void Report(Outcome outcome, LinearSolveSummary* summary);
+  void Remember(const Eigen::VectorXd& solution);
   bool IsRenewalCheaper(int iterations, double first_residual, double present_residual,
                         double target) const;
   void StartFromEarlierSolutions(const BlockMatrix& A, Eigen::VectorXd* x);
@@ -92,7 +116,8 @@ struct LinearSolver::Implementation {
                            const std::vector<Eigen::Matrix3d>* rotations);
 };
 
-// Computes the factor of A; `kept` becomes kNone if A is not positive definite.
+// Computes the factor of A in double precision. If A is not positive definite, `kept` becomes kNone
+// and the result is false.
 bool LinearSolver::Implementation::FactoriseInDouble(const BlockMatrix& A) {
   if (!double_factor) double_factor.emplace(*pattern, order);
   kept = double_factor->Factorise(A) ? Kept::kDouble : Kept::kNone;
@@ -102,12 +127,14 @@ bool LinearSolver::Implementation::FactoriseInDouble(const BlockMatrix& A) {
   return kept == Kept::kDouble;
 }
 
+// Computes the factor of a matrix, in double precision where single precision does not suffice.
+// Returns false, without a factor, if the matrix is not positive definite on the free components.
 bool LinearSolver::Implementation::Factorise(const BlockMatrix& coupled) {
   const BlockMatrix& A = held.Decoupled(coupled);
   ++factorisations;
   solves = 0;
   Pivots pivots = Pivots::kInDoubt;
-  if (options.method == LinearSolverOptions::Method::kKeptFactor && !single_precision_fails) {
+  if (KeepsFactors() && !single_precision_fails) {
     pivots = single_factor->Factorise(A);
     kept = pivots == Pivots::kPositive ? Kept::kSingle : Kept::kNone;
     factorisation_cost =
@@ -123,46 +150,52 @@ bool LinearSolver::Implementation::Factorise(const BlockMatrix& coupled) {
   return kept != Kept::kNone;
 }
 
-// z = M⁻¹ r on the free nodes, 0 on the fixed ones.
+// z = M⁻¹ r at the free nodes, 0 at those that are held along all axes.
 void LinearSolver::Implementation::ApplyFactor(const Eigen::VectorXd& r, Eigen::VectorXd* z) {
-  const auto rotated_back = [&](int node) -> Eigen::Vector3d {
-    if (rotation.empty()) return r.segment<3>(3 * node);
-    return rotation[node].transpose() * r.segment<3>(3 * node);
-  };
-  const auto rotate_forward = [&](int node, const Eigen::Vector3d& value) {
-    z->segment<3>(3 * node) = rotation.empty() ? value : Eigen::Vector3d(rotation[node] * value);
-  };
   z->setZero(r.size());
-  if (kept == Kept::kSingle) {
-    const std::vector<int>& nodes = single_factor->order().node;
-    const int free_nodes = static_cast<int>(nodes.size());
-    const double norm = r.norm();
-    single_reduced.resize(3 * free_nodes);
-    for (int k = 0; k < free_nodes; ++k) {
-      single_reduced.segment<3>(3 * k) = (rotated_back(nodes[k]) / norm).cast<float>();
-    }
-    single_factor->Solve(single_reduced, &single_reduced);
-    for (int k = 0; k < free_nodes; ++k) {
-      rotate_forward(nodes[k], norm * single_reduced.segment<3>(3 * k).cast<double>());
-    }
-  } else {
-    double_reduced.resize(3 * order.FreeNodes());
-    for (int k = 0; k < order.FreeNodes(); ++k) {
-      double_reduced.segment<3>(3 * k) = rotated_back(order.node[k]);
-    }
-    double_factor->Solve(double_reduced, &double_solution);
-    for (int k = 0; k < order.FreeNodes(); ++k) {
-      rotate_forward(order.node[k], double_solution.col(0).segment<3>(3 * k));
-    }
+  if (kept == Kept::kSingle)
+    ApplySingleFactor(r, z);
+  else
+    ApplyDoubleFactor(r, z);
+}
+
+// The right-hand side is scaled to order one, which is within the range of single precision.
+void LinearSolver::Implementation::ApplySingleFactor(const Eigen::VectorXd& r, Eigen::VectorXd* z) {
+  const std::vector<int>& nodes = single_factor->order().node;
+  const int free_nodes = static_cast<int>(nodes.size());
+  const double norm = r.norm();
+  single_reduced.resize(3 * free_nodes);
+  for (int k = 0; k < free_nodes; ++k) {
+    single_reduced.segment<3>(3 * k) = (RotatedBack(nodes[k], r) / norm).cast<float>();
+  }
+  single_factor->Solve(single_reduced, &single_reduced);
+  for (int k = 0; k < free_nodes; ++k) {
+    z->segment<3>(3 * nodes[k]) =
+        RotatedForward(nodes[k], norm * single_reduced.segment<3>(3 * k).cast<double>());
   }
 }
 
+void LinearSolver::Implementation::ApplyDoubleFactor(const Eigen::VectorXd& r, Eigen::VectorXd* z) {
+  double_reduced.resize(3 * order.FreeNodes());
+  for (int k = 0; k < order.FreeNodes(); ++k) {
+    double_reduced.segment<3>(3 * k) = RotatedBack(order.node[k], r);
+  }
+  double_factor->Solve(double_reduced, &double_solution);
+  for (int k = 0; k < order.FreeNodes(); ++k) {
+    z->segment<3>(3 * order.node[k]) =
+        RotatedForward(order.node[k], double_solution.col(0).segment<3>(3 * k));
+  }
+}
+
+// y = A x for the free components, 0 for the held ones.
 void LinearSolver::Implementation::MultiplyFree(const BlockMatrix& A, const Eigen::VectorXd& x,
                                                 Eigen::VectorXd* y) const {
   A.Multiply(x, y);
   held.ClearIn(*y);
 }
 
+// Sets the rotations of the nodes since the factorisation, given those relative to the common
+// configuration (linear_solver.h).
 void LinearSolver::Implementation::SetRotation(const std::vector<Eigen::Matrix3d>* rotations) {
   rotation.clear();
   if (rotations == nullptr || factor_rotations.empty()) return;
@@ -175,7 +208,8 @@ void LinearSolver::Implementation::SetRotation(const std::vector<Eigen::Matrix3d
   }
 }
 
-// Sets the rotations of the nodes at which a new factor has been computed.
+// Sets the rotations of the nodes at which a new factor has been computed; the nodes have not
+// rotated since.
 void LinearSolver::Implementation::SetFactorRotations(
     const std::vector<Eigen::Matrix3d>* rotations) {
   rotation.clear();
@@ -183,7 +217,8 @@ void LinearSolver::Implementation::SetFactorRotations(
   if (rotations != nullptr) factor_rotations = *rotations;
 }
 
-// Drops the factor if from now on keeping it would increase the average cost of a solve.
+// Counts a solve with the kept factor, before which the cost since the factorisation was
+// `spent_before`. Drops the factor if from now on keeping it would increase the average cost.
 void LinearSolver::Implementation::CountSolve(double spent_before) {
   const double average = spent_before / std::max(solves, 1);
   ++solves;
@@ -227,7 +262,6 @@ bool LinearSolver::Implementation::IsRenewalCheaper(int iterations, double first
          factorisation_cost + kIterationsWhenNew * iteration_cost;
 }
 
-// Preconditioned conjugate gradients from the current *x, whose residual is in `residual`.
 LinearSolver::Implementation::Outcome LinearSolver::Implementation::Iterate(
     const BlockMatrix& A, double b_norm, bool may_renew, Eigen::VectorXd* x,
     LinearSolveSummary* summary) {
@@ -262,6 +296,54 @@ LinearSolver::Implementation::Outcome LinearSolver::Implementation::Iterate(
   }
 }
 
+// Sets status and message, given the number of iterations and the achieved residual.
+void LinearSolver::Implementation::Report(Outcome outcome, LinearSolveSummary* summary) {
+  switch (outcome) {
+    case Outcome::kConverged:
+      summary->status = Status::kSolved;
+      break;
+    case Outcome::kIndefinite:
+      summary->status = Status::kNotPositiveDefinite;
+      summary->message = "the matrix is not positive definite on the free components";
+      break;
+    case Outcome::kTooManyIterations:
+    case Outcome::kBrokenDown:
+      summary->status = Status::kNoConvergence;
+      summary->message = fmt::format(
+          "conjugate gradients stopped after {} iterations at a relative residual of {:.2g}",
+          summary->iterations, summary->relative_residual);
+      break;
+    case Outcome::kNoFactor:
+      LOG(FATAL) << "the iteration has not been run";
+  }
+}
+
+LinearSolver::Implementation::Outcome LinearSolver::Implementation::IterateWithKeptFactor(
+    const BlockMatrix& A, double b_norm, const std::vector<Eigen::Matrix3d>* rotations,
+    Eigen::VectorXd* x, LinearSolveSummary* summary) {
+  SetRotation(rotations);
+  const double before = spent;
+  const Outcome outcome = Iterate(A, b_norm, /*may_renew=*/true, x, summary);
+  CountSolve(before);
+  return outcome;
+}
+
+LinearSolver::Implementation::Outcome LinearSolver::Implementation::IterateWithNewFactor(
+    const BlockMatrix& A, double b_norm, const std::vector<Eigen::Matrix3d>* rotations,
+    Eigen::VectorXd* x, LinearSolveSummary* summary) {
+  summary->factorised = true;
+  if (!Factorise(A)) return Outcome::kIndefinite;
+  SetFactorRotations(rotations);
+  const Outcome outcome = Iterate(A, b_norm, /*may_renew=*/false, x, summary);
+  ++solves;
+  return outcome;
+}
+
+void LinearSolver::Implementation::Remember(const Eigen::VectorXd& solution) {
+  earlier_solutions.push_front(solution);
+  if (earlier_solutions.size() > kRememberedSolutions) earlier_solutions.pop_back();
+}
+
 LinearSolveSummary LinearSolver::Implementation::Solve(
     const BlockMatrix& A, const Eigen::VectorXd& b, Eigen::VectorXd* x,
     const std::vector<Eigen::Matrix3d>* rotations) {
@@ -278,43 +360,17 @@ LinearSolveSummary LinearSolver::Implementation::Solve(
   }
 
   StartFromEarlierSolutions(A, x);
-  Outcome outcome = Outcome::kTooManyIterations;
-  if (options.method == LinearSolverOptions::Method::kKeptFactor && kept != Kept::kNone) {
-    SetRotation(rotations);
-    const double before = spent;
-    outcome = Iterate(A, b_norm, /*may_renew=*/true, x, &summary);
-    CountSolve(before);
-  }
-  if (outcome == Outcome::kTooManyIterations || outcome == Outcome::kBrokenDown) {
-    summary.factorised = true;
-    if (Factorise(A)) {
-      SetFactorRotations(rotations);
-      outcome = Iterate(A, b_norm, /*may_renew=*/false, x, &summary);
-      ++solves;
-    } else {
-      outcome = Outcome::kIndefinite;
-    }
-  }
+  Outcome outcome = Outcome::kNoFactor;
+  if (KeepsFactors() && kept != Kept::kNone)
+    outcome = IterateWithKeptFactor(A, b_norm, rotations, x, &summary);
+  if (outcome != Outcome::kConverged && outcome != Outcome::kIndefinite)
+    outcome = IterateWithNewFactor(A, b_norm, rotations, x, &summary);
   summary.relative_residual = residual.norm() / b_norm;
-  switch (outcome) {
-    case Outcome::kConverged:
-      summary.status = Status::kSolved;
-      earlier_solutions.push_front(*x);
-      if (earlier_solutions.size() > kRememberedSolutions) earlier_solutions.pop_back();
-      break;
-    case Outcome::kIndefinite:
-      summary.status = Status::kNotPositiveDefinite;
-      summary.message = "the matrix is not positive definite on the free components";
-      break;
-    case Outcome::kTooManyIterations:
-    case Outcome::kBrokenDown:
-      summary.status = Status::kNoConvergence;
-      summary.message = fmt::format(
-          "conjugate gradients stopped after {} iterations at a relative "
-          "residual of {:.2g}",
-          summary.iterations, summary.relative_residual);
-  }
-  if (!summary.IsUsable()) x->setZero();
+  Report(outcome, &summary);
+  if (summary.IsUsable())
+    Remember(*x);
+  else
+    x->setZero();
   return summary;
 }
 
@@ -335,9 +391,7 @@ LinearSolveSummary LinearSolver::Solve(const BlockMatrix& A, const Eigen::Vector
   return implementation_->Solve(A, b, x, node_rotations);
 }
 
-bool LinearSolver::KeepsFactors() const {
-  return implementation_->options.method == LinearSolverOptions::Method::kKeptFactor;
-}
+bool LinearSolver::KeepsFactors() const { return implementation_->KeepsFactors(); }
 
 bool LinearSolver::HasFactor() const {
   return implementation_->kept != Implementation::Kept::kNone;

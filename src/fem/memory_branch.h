@@ -29,9 +29,10 @@
 //   KelvinMatrix Moduli(E, z) const;                                               ∂s/∂E
 //   KelvinVector StressDerivative(E, z, int parameter) const;     ∂s/∂(parameter > 0, no setting)
 //   State AtEnd(E, z) const;                                      z⁺, z at the end of the step
-//   KelvinVector StressByState(E, z, const State& dz) const;                       ∂s/∂z dz
-//   State AtEndBy(E, z, const KelvinVector& dE, const State& dz) const;   ∂z⁺/∂E dE + ∂z⁺/∂z dz
-//   State AtEndByParameter(E, z, int parameter) const;            ∂z⁺/∂(parameter > 0, no setting)
+//   State AtEndDerivative(E, z, int parameter) const;             ∂z⁺/∂(parameter > 0, no setting)
+//   KelvinVector StressChange(E, z, const State& dz) const;                        ∂s/∂z dz
+//   State AtEndChange(E, z, const KelvinVector& dE, const State& dz) const;
+//                                                                 ∂z⁺/∂E dE + ∂z⁺/∂z dz
 // with State a Vector<double, kStateSize>. The derivatives at a limit are those of one branch
 // (Effect::AddStateDerivatives).
 #ifndef LACUNA_FEM_MEMORY_BRANCH_H_
@@ -44,11 +45,21 @@
 #include <optional>
 
 #include "fem/cloneable_effect.h"
-#include "fem/element_kinematics.h"
 #include "fem/green_lagrange_strain.h"
+#include "fem/point_integrals.h"
 #include "fem/stress_tangent.h"
 
 namespace lacuna {
+
+// The first Piola–Kirchhoff stress P = F S as its factors, so that the weight w of a quadrature
+// point is applied to F before the product, w P = (w F) S. The order decides how results are
+// rounded.
+struct FactoredStress {
+  Eigen::Matrix3d F, S;
+};
+inline Eigen::Matrix3d operator*(double weight, const FactoredStress& P) {
+  return weight * P.F * P.S;
+}
 
 // The branch as an effect. Its internal variables are those of all quadrature points one after
 // another, kStateSize per point, and are 0 at rest. Energy() is the incremental potential of the
@@ -68,31 +79,44 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
     const double modulus = Modulus();
-    const Law law(parameters_, at.time_step);
-    AddNodalForcesOf(
+    const Law law = LawAt(at);
+    AddNodalForces<Points>(
         at,
-        [&](const KelvinVector& strain, const State& state) {
-          return KelvinVector(modulus * law.Stress(strain, state));
+        [&](const auto& points, int k) {
+          return FactoredStress{
+              points.F(k), FromKelvin(modulus * law.Stress(points.Strain(k), points.Memory(k)))};
         },
         force);
   }
 
   bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
     const double modulus = Modulus();
-    const Law law(parameters_, at.time_step);
-    ForEachPoint(at, [&](int q, const Eigen::Matrix3d& F) {
-      stress->middleCols<3>(3 * q) +=
-          modulus * F * FromKelvin(law.Stress(GreenLagrangeStrain(F), StateOf(at.state, q)));
-    });
+    const Law law = LawAt(at);
+    AddPointStress<Points>(
+        at,
+        [&](const auto& points, int k) {
+          return modulus * FactoredStress{points.F(k), FromKelvin(law.Stress(points.Strain(k),
+                                                                             points.Memory(k)))};
+        },
+        stress);
     return true;
   }
 
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const override {
     if (weights.position == 0) return;
-    WithNodesPerElement(at.body, [&](auto nodes) {
-      AddStiffnessMatrix<decltype(nodes)::value>(at, weights.position, convexify, tangent);
-    });
+    const Law law = LawAt(at);
+    AddStiffnessMatrix<Points>(
+        at, weights.position * Modulus(),
+        [&](const auto& points, int k) {
+          const KelvinVector& strain = points.Strain(k);
+          const State memory = points.Memory(k);
+          StressTangent C = TangentOfSecondStress(points.F(k), law.Stress(strain, memory),
+                                                  law.Moduli(strain, memory));
+          if (convexify && !IsPositiveSemidefinite(C)) C = PositivePart(C);
+          return C;
+        },
+        tangent);
   }
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
@@ -100,20 +124,26 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     CHECK(parameter >= 0 && parameter < parameters_.size());
     CHECK(!Card().parameters[parameter].setting);
     const double modulus = Modulus();
-    const Law law(parameters_, at.time_step);
-    AddNodalForcesOf(
+    const Law law = LawAt(at);
+    const auto stress = [&](const KelvinVector& strain, const State& memory) {
+      return parameter == 0
+                 ? law.Stress(strain, memory)
+                 : KelvinVector(modulus * law.StressDerivative(strain, memory, parameter));
+    };
+    AddNodalForces<Points>(
         at,
-        [&](const KelvinVector& strain, const State& state) {
-          return parameter == 0
-                     ? law.Stress(strain, state)
-                     : KelvinVector(modulus * law.StressDerivative(strain, state, parameter));
+        [&](const auto& points, int k) {
+          return FactoredStress{points.F(k),
+                                FromKelvin(stress(points.Strain(k), points.Memory(k)))};
         },
         derivative);
   }
 
   std::optional<double> Energy(const Kinematics& at) const override {
-    return WithNodesPerElement(
-        at.body, [&](auto nodes) { return TotalPotential<decltype(nodes)::value>(at); });
+    const Law law = LawAt(at);
+    return Modulus() * TotalEnergy<Points>(at, [&](const auto& points, int k) {
+             return law.Potential(points.Strain(k), points.Memory(k));
+           });
   }
 
   Eigen::Index StateSize(const Body& body) const override {
@@ -124,9 +154,9 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
   }
   void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const override {
     CHECK_EQ(state_at_end->size(), StateSize(at.body));
-    const Law law(parameters_, at.time_step);
-    ForEachPoint(at, [&](int q, const Eigen::Matrix3d& F) {
-      StateOf(*state_at_end, q) = law.AtEnd(GreenLagrangeStrain(F), StateOf(at.state, q));
+    const Law law = LawAt(at);
+    ForEachPoint(at, [&](int q, const KelvinVector& strain, const State& memory) {
+      MemoryOf(*state_at_end, q) = law.AtEnd(strain, memory);
     });
   }
 
@@ -147,10 +177,9 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     CHECK(parameter >= 0 && parameter < parameters_.size());
     CHECK(!Card().parameters[parameter].setting);
     if (parameter == 0) return;
-    const Law law(parameters_, at.time_step);
-    ForEachPoint(at, [&](int q, const Eigen::Matrix3d& F) {
-      StateOf(change, q) +=
-          law.AtEndByParameter(GreenLagrangeStrain(F), StateOf(at.state, q), parameter);
+    const Law law = LawAt(at);
+    ForEachPoint(at, [&](int q, const KelvinVector& strain, const State& memory) {
+      MemoryOf(change, q) += law.AtEndDerivative(strain, memory, parameter);
     });
   }
 
@@ -159,73 +188,49 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
 
   double Modulus() const { return parameters_[0]; }  // m, Pa
 
+  // The law of a step. CHECKs once for all points that there is a state for each.
+  Law LawAt(const Kinematics& at) const {
+    CHECK_EQ(at.state.size(), StateSize(at.body));
+    return Law(parameters_, at.time_step);
+  }
+
   // The internal variables of quadrature point q in a vector of those of all points.
   template <typename States>
-  static auto StateOf(States& states, int q) {
+  static auto MemoryOf(States& states, int q) {
     return states.template segment<Law::kStateSize>(Eigen::Index{Law::kStateSize} * q);
   }
 
-  // Calls visit(q, F) for each quadrature point q of an element, with its deformation gradient F.
-  template <int kNodes, typename Visit>
-  static void ForEachPoint(const Kinematics& at, int element, const Visit& visit) {
-    constexpr int kPoints = QuadraturePoints<kNodes>();
-    Eigen::Matrix3d F[kPoints];
-    FieldGradients<kNodes>(at.body, element, at.position, F);
-    for (int p = 0; p < kPoints; ++p) visit(element * kPoints + p, F[p]);
-  }
+  // The arguments of the law at the points of a batch (point_integrals.h): F, E, and z at the start
+  // of the step, whose size LawAt checks.
+  template <int kNodes>
+  class Points {
+   public:
+    Points(const Kinematics& at, int begin, int end)
+        : at_(at), first_(begin * QuadraturePoints<kNodes>()), deformation_(at, begin, end) {
+      for (int k = 0; k < deformation_.points; ++k) strain_[k] = GreenLagrangeStrain(F(k));
+    }
 
-  // Calls visit(q, F) for each quadrature point q of all elements.
+    const Eigen::Matrix3d& F(int k) const { return deformation_.gradient[k]; }
+    const KelvinVector& Strain(int k) const { return strain_[k]; }
+    State Memory(int k) const { return MemoryOf(at_.state, first_ + k); }
+
+   private:
+    const Kinematics& at_;
+    int first_;
+    DeformationGradients<kNodes> deformation_;
+    KelvinVector strain_[DeformationGradients<kNodes>::kMost];
+  };
+
+  // Calls visit(q, E, z) for each quadrature point q.
   template <typename Visit>
   static void ForEachPoint(const Kinematics& at, const Visit& visit) {
-    CHECK_EQ(at.state.size(), Eigen::Index{Law::kStateSize} * at.body.PointCount());
     WithNodesPerElement(at.body, [&](auto nodes) {
+      constexpr int kPoints = QuadraturePoints<decltype(nodes)::value>();
       ForEachElement(*at.body.schedule, [&](int element) {
-        ForEachPoint<decltype(nodes)::value>(at, element, visit);
+        const Points<decltype(nodes)::value> points(at, element, element + 1);
+        for (int p = 0; p < kPoints; ++p)
+          visit(element * kPoints + p, points.Strain(p), points.Memory(p));
       });
-    });
-  }
-
-  // Adds the nodal forces −Σ w F S g_a with S = stress(strain, state).
-  template <typename Stress>
-  void AddNodalForcesOf(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) const {
-    CHECK_EQ(at.state.size(), StateSize(at.body));
-    WithNodesPerElement(
-        at.body, [&](auto nodes) { AddNodalForcesOf<decltype(nodes)::value>(at, stress, force); });
-  }
-
-  template <int kNodes, typename Stress>
-  static void AddNodalForcesOf(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) {
-    const Body& body = at.body;
-    ForEachElement(*body.schedule, [&](int element) {
-      constexpr int kPoints = QuadraturePoints<kNodes>();
-      Eigen::Matrix3d weighted[kPoints];
-      ForEachPoint<kNodes>(at, element, [&](int q, const Eigen::Matrix3d& F) {
-        weighted[q - element * kPoints] =
-            body.weight[q] * F * FromKelvin(stress(GreenLagrangeStrain(F), StateOf(at.state, q)));
-      });
-      AddPointForces<kNodes>(body, element, weighted, force);
-    });
-  }
-
-  template <int kNodes>
-  void AddStiffnessMatrix(const Kinematics& at, double weight, bool convexify,
-                          BlockMatrix* tangent) const {
-    CHECK_EQ(at.state.size(), StateSize(at.body));
-    const Law law(parameters_, at.time_step);
-    const Body& body = at.body;
-    ForEachElement(*body.schedule, [&](int element) {
-      ElementStiffness<kNodes> stiffness;
-      stiffness.SetZero();
-      ForEachPoint<kNodes>(at, element, [&](int q, const Eigen::Matrix3d& F) {
-        const KelvinVector strain = GreenLagrangeStrain(F);
-        const State state = StateOf(at.state, q);
-        StressTangent C =
-            TangentOfSecondStress(F, law.Stress(strain, state), law.Moduli(strain, state));
-        if (convexify && !IsPositiveSemidefinite(C)) C = PositivePart(C);
-        AddStiffness<kNodes>(C, ShapeGradient<kNodes>(body, q),
-                             -weight * body.weight[q] * Modulus(), &stiffness);
-      });
-      ScatterStiffness<kNodes>(body, element, stiffness, tangent);
     });
   }
 
@@ -237,74 +242,46 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
   }
 
   template <int kNodes>
-  double TotalPotential(const Kinematics& at) const {
-    CHECK_EQ(at.state.size(), StateSize(at.body));
-    const Law law(parameters_, at.time_step);
-    const double sum = SumOverElements(*at.body.schedule, [&](int element) {
-      double potential = 0;
-      ForEachPoint<kNodes>(at, element, [&](int q, const Eigen::Matrix3d& F) {
-        potential +=
-            at.body.weight[q] * law.Potential(GreenLagrangeStrain(F), StateOf(at.state, q));
-      });
-      return potential;
-    });
-    return Modulus() * sum;
-  }
-
-  // Calls visit(element, F, strain) for each element, with the deformation gradients and the
-  // strains at its points.
-  template <int kNodes, typename Visit>
-  static void ForEachStrainedElement(const Kinematics& at, const Visit& visit) {
-    CHECK_EQ(at.state.size(), Eigen::Index{Law::kStateSize} * at.body.PointCount());
-    constexpr int kPoints = QuadraturePoints<kNodes>();
-    ForEachElement(*at.body.schedule, [&](int element) {
-      Eigen::Matrix3d F[kPoints];
-      KelvinVector strain[kPoints];
-      FieldGradients<kNodes>(at.body, element, at.position, F);
-      for (int p = 0; p < kPoints; ++p) strain[p] = GreenLagrangeStrain(F[p]);
-      visit(element, F, strain);
-    });
-  }
-
-  template <int kNodes>
   void AddStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& changes,
                            Eigen::Ref<Eigen::MatrixXd> forces) const {
     constexpr int kPoints = QuadraturePoints<kNodes>();
-    const Law law(parameters_, at.time_step);
-    const auto add = [&](int element, const Eigen::Matrix3d* F, const KelvinVector* strain) {
+    const Law law = LawAt(at);
+    ForEachElement(*at.body.schedule, [&](int element) {
+      const Points<kNodes> points(at, element, element + 1);
       Eigen::Matrix3d weighted[kPoints];
       for (Eigen::Index k = 0; k < changes.cols(); ++k) {
         const auto change = changes.col(k);
         for (int p = 0; p < kPoints; ++p) {
           const int q = element * kPoints + p;
           weighted[p] =
-              Modulus() * at.body.weight[q] * F[p] *
-              FromKelvin(law.StressByState(strain[p], StateOf(at.state, q), StateOf(change, q)));
+              Modulus() * at.body.weight[q] *
+              FactoredStress{points.F(p),
+                             FromKelvin(law.StressChange(points.Strain(p), points.Memory(p),
+                                                         MemoryOf(change, q)))};
         }
         AddPointForces<kNodes>(at.body, element, weighted, forces.col(k).data());
       }
-    };
-    ForEachStrainedElement<kNodes>(at, add);
+    });
   }
 
   template <int kNodes>
   void AdvanceStateDerivatives(const Kinematics& at, const Eigen::Ref<const Eigen::MatrixXd>& moved,
                                Eigen::Ref<Eigen::MatrixXd> changes) const {
     constexpr int kPoints = QuadraturePoints<kNodes>();
-    const Law law(parameters_, at.time_step);
-    const auto advance = [&](int element, const Eigen::Matrix3d* F, const KelvinVector* strain) {
-      Eigen::Matrix3d by[kPoints];
+    const Law law = LawAt(at);
+    ForEachElement(*at.body.schedule, [&](int element) {
+      const Points<kNodes> points(at, element, element + 1);
+      Eigen::Matrix3d moved_F[kPoints];
       for (Eigen::Index k = 0; k < changes.cols(); ++k) {
         auto change = changes.col(k);
-        FieldGradients<kNodes>(at.body, element, moved.col(k).data(), by);
+        FieldGradients<kNodes>(at.body, element, moved.col(k).data(), moved_F);
         for (int p = 0; p < kPoints; ++p) {
-          const int q = element * kPoints + p;
-          StateOf(change, q) = law.AtEndBy(strain[p], StateOf(at.state, q),
-                                           StrainChange(F[p], by[p]), State(StateOf(change, q)));
+          auto own = MemoryOf(change, element * kPoints + p);
+          own = law.AtEndChange(points.Strain(p), points.Memory(p),
+                                StrainChange(points.F(p), moved_F[p]), State(own));
         }
       }
-    };
-    ForEachStrainedElement<kNodes>(at, advance);
+    });
   }
 
   Eigen::VectorXd parameters_;  // in the order of the card

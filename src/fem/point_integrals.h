@@ -70,8 +70,11 @@ void AddPointStress(const Kinematics& at, const Stress& stress_of, Eigen::Matrix
 }
 
 // Adds weight · ∂f/∂x to `tangent`. tangent_of(points, k) returns ∂P/∂F in Pa as a StressTangent,
-// or as a type for which AddStiffness(tangent, …) is overloaded.
-template <template <int> class Points, typename TangentOf>
+// or as a type for which AddStiffness(tangent, …) is overloaded. A law that depends on the rate Ḟ
+// may return a weighted sum a ∂P/∂F + b ∂P/∂Ḟ instead, for which a ∂f/∂x + b ∂f/∂v is added. What
+// is returned must be symmetric, or skew-symmetric with kMirror = −1: the tangent of a law without
+// a potential has both parts.
+template <template <int> class Points, int kMirror = 1, typename TangentOf>
 void AddStiffnessMatrix(const Kinematics& at, double weight, const TangentOf& tangent_of,
                         BlockMatrix* tangent) {
   WithNodesPerElement(at.body, [&](auto nodes) {
@@ -87,7 +90,7 @@ void AddStiffnessMatrix(const Kinematics& at, double weight, const TangentOf& ta
                                ShapeGradient<kNodes>(at.body, q), -weight * at.body.weight[q],
                                &stiffness);
         }
-        ScatterStiffness<kNodes>(at.body, element, stiffness, tangent);
+        ScatterStiffness<kNodes, kMirror>(at.body, element, stiffness, tangent);
       }
     });
   });

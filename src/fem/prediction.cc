@@ -13,15 +13,11 @@
 namespace lacuna {
 namespace {
 
-PredictionSummary Stopped(PredictionSummary summary, const std::string& why) {
-  summary.status = PredictionSummary::Status::kStopped;
-  summary.message = why;
-  return summary;
-}
-
-// Tighter than the tolerance of a step, so that the start of the search has no influence.
+// The tolerance of the first equilibrium relative to that of a step. It is tighter, so that the
+// start of the search has no influence.
 constexpr double kHoldTolerance = 0.01;
 
+// Brings `history` into the equilibrium in which the body is held before it is released.
 StepSummary Hold(const PredictionOptions& options, Stepper* stepper, MotionHistory* history) {
   if (options.held_guess.size() > 0) {
     MotionHistory near = *history;
@@ -35,7 +31,7 @@ StepSummary Hold(const PredictionOptions& options, Stepper* stepper, MotionHisto
   return stepper->Equilibrium(options.held_force, history, kHoldTolerance);
 }
 
-// The end of a step.
+// The end of a step, as in PredictedState.
 struct EndState {
   Knot<Eigen::VectorXd> state;
   Knot<Eigen::MatrixXd> jacobian;
@@ -47,8 +43,8 @@ EndState EndOf(const MotionHistory& history, const TangentLinear& linear) {
   return {{history.position, history.velocity}, {linear.position(), linear.velocity()}, {}, {}};
 }
 
-// The reactions at the end of the step of `equation`.
-void AddReactions(const Model& model, const std::vector<Reaction>& reactions,
+// Sets the reactions at the end of the step of `equation`.
+void SetReactions(const Model& model, const std::vector<Reaction>& reactions,
                   const StepEquation& equation, const Eigen::VectorXd& external_force,
                   const TangentLinear& linear, EndState* end) {
   if (reactions.empty()) return;
@@ -102,6 +98,101 @@ constexpr double kFirstStep = 0.1;  // length of the first step relative to the 
 // Relative excess over the requested length that a quasi-static step may have by rounding.
 constexpr double kRounding = 1e-9;
 
+// One prediction. The references must outlive it.
+class PredictionRun {
+ public:
+  PredictionRun(const Model& model, const PredictionOptions& options,
+                const std::vector<double>& times, const std::vector<Perturbation>& perturbations,
+                const Visits::Visit& visit)
+      : model_(model),
+        options_(options),
+        stepper_(model, options.step),
+        linear_(model, perturbations,
+                {.with_reactions = !options.reactions.empty(),
+                 .tolerance = options.sensitivity_tolerance}),
+        history_(RestHistory(model)),
+        visits_(times, visit, &summary_) {
+    history_.time = options.start_time;
+  }
+
+  PredictionSummary Run() {
+    if (!Start()) return summary_;
+    while (visits_.AreLeft()) {
+      ThrowIfInterrupted();
+      ThrowIfOverMemoryLimit();
+      if (!TakeStep()) return summary_;
+    }
+    summary_.status = PredictionSummary::Status::kReached;
+    return summary_;
+  }
+
+ private:
+  // Finds the equilibrium at the start and visits the times up to it. Returns false, with status
+  // and message, if the prediction ends here; so does TakeStep().
+  bool Start() {
+    before_ = history_;
+    const StepSummary equilibrium = Hold(options_, &stepper_, &history_);
+    if (equilibrium.status == StepSummary::Status::kMissingMass) return Stop(equilibrium.message);
+    if (!equilibrium.IsUsable())
+      return Stop((model_.grips.empty()
+                       ? "no equilibrium to start from, and no grip holds the object: "
+                       : "no equilibrium to start from: ") +
+                  equilibrium.message);
+    summary_.held = history_.position;
+    if (!AdvanceSensitivities(TimeScheme::kQuasiStatic, 0)) return false;
+    latest_ = EndOf(history_, linear_);
+    SetReactions(model_, options_.reactions,
+                 StepEquation(model_, before_, TimeScheme::kQuasiStatic, 0), options_.held_force,
+                 linear_, &latest_);
+    visits_.Until(options_.start_time, 0, latest_, latest_);
+    return true;
+  }
+
+  // Takes one step and visits the times within it.
+  bool TakeStep() {
+    const TimeScheme scheme = options_.step.scheme;
+    before_ = history_;
+    const auto [length, end] =
+        NextStep(scheme, options_.time_step, summary_.steps, history_.time, visits_.NextTime());
+    const StepSummary step = stepper_.Step(length, {}, &history_);
+    if (!step.IsUsable()) return Stop(step.message);
+    if (!AdvanceSensitivities(scheme, length)) return false;
+    history_.time = end;
+    ++summary_.steps;
+    EndState to = EndOf(history_, linear_);
+    SetReactions(model_, options_.reactions, StepEquation(model_, before_, scheme, length), {},
+                 linear_, &to);
+    visits_.Until(history_.time, length, latest_, to);
+    latest_ = std::move(to);
+    return true;
+  }
+
+  // Advances the sensitivities over the latest step, which leads to the present position.
+  bool AdvanceSensitivities(TimeScheme scheme, double length) {
+    const TangentLinearSummary linearised =
+        linear_.Advance(before_, scheme, length, history_.position);
+    return linearised.IsUsable() || Stop(linearised.message);
+  }
+
+  // Always returns false.
+  bool Stop(const std::string& why) {
+    summary_.status = PredictionSummary::Status::kStopped;
+    summary_.message = why;
+    return false;
+  }
+
+  const Model& model_;
+  const PredictionOptions& options_;
+  Stepper stepper_;
+  TangentLinear linear_;
+  MotionHistory history_;  // of the motion so far
+  // At the start of the latest step. A member, so that its vectors are allocated only once.
+  MotionHistory before_;
+  PredictionSummary summary_;
+  Visits visits_;
+  EndState latest_;  // the end of the latest step
+};
+
 }  // namespace
 
 PredictionStep NextStep(TimeScheme scheme, double time_step, int steps_before, double time,
@@ -122,53 +213,7 @@ PredictionSummary Predict(
     const std::function<void(int index, const PredictedState& state)>& visit) {
   CHECK(std::is_sorted(times.begin(), times.end()));
   CHECK_GT(options.time_step, 0);
-  PredictionSummary summary;
-  Stepper stepper(model, options.step);
-  TangentLinear linear(
-      model, perturbations,
-      {.with_reactions = !options.reactions.empty(), .tolerance = options.sensitivity_tolerance});
-  MotionHistory history = RestHistory(model);
-  history.time = options.start_time;
-
-  MotionHistory before = history;
-  const StepSummary equilibrium = Hold(options, &stepper, &history);
-  if (equilibrium.status == StepSummary::Status::kMissingMass)
-    return Stopped(summary, equilibrium.message);
-  if (!equilibrium.IsUsable())
-    return Stopped(summary, (model.grips.empty()
-                                 ? "no equilibrium to start from, and no grip holds the object: "
-                                 : "no equilibrium to start from: ") +
-                                equilibrium.message);
-  summary.held = history.position;
-  TangentLinearSummary linearised =
-      linear.Advance(before, TimeScheme::kQuasiStatic, 0, history.position);
-  if (!linearised.IsUsable()) return Stopped(summary, linearised.message);
-
-  Visits visits(times, visit, &summary);
-  EndState from = EndOf(history, linear);
-  AddReactions(model, options.reactions, StepEquation(model, before, TimeScheme::kQuasiStatic, 0),
-               options.held_force, linear, &from);
-  visits.Until(options.start_time, 0, from, from);
-  while (visits.AreLeft()) {
-    ThrowIfInterrupted();
-    ThrowIfOverMemoryLimit();
-    before = history;
-    const auto [length, end] = NextStep(options.step.scheme, options.time_step, summary.steps,
-                                        history.time, visits.NextTime());
-    const StepSummary step = stepper.Step(length, {}, &history);
-    if (!step.IsUsable()) return Stopped(summary, step.message);
-    linearised = linear.Advance(before, options.step.scheme, length, history.position);
-    if (!linearised.IsUsable()) return Stopped(summary, linearised.message);
-    history.time = end;
-    ++summary.steps;
-    EndState to = EndOf(history, linear);
-    AddReactions(model, options.reactions, StepEquation(model, before, options.step.scheme, length),
-                 {}, linear, &to);
-    visits.Until(history.time, length, from, to);
-    from = std::move(to);
-  }
-  summary.status = PredictionSummary::Status::kReached;
-  return summary;
+  return PredictionRun(model, options, times, perturbations, visit).Run();
 }
 
 }  // namespace lacuna

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "fem/cholmod_factor.h"
-#include "fem/elimination_order.h"
+#include "fem/free_component_factor.h"
 #include "fem/held_components.h"
 #include "fem/prediction.h"
 #include "geometry/hermite.h"
@@ -34,9 +33,7 @@ class TangentsAlong {
       : model_(model),
         time_step_(options.time_step),
         has_inertia_(options.scheme != TimeScheme::kQuasiStatic),
-        held_(HeldAxes(model)),
-        order_(NestedDissection(*model.body->pattern, held_.whole_nodes())),
-        factor_(*model.body->pattern, order_),
+        factor_(*model.body->pattern, HeldComponents(HeldAxes(model))),
         matrix_(model.body->pattern) {}
 
   // The negative weighted derivative of the effects at a state, times the columns.
@@ -53,12 +50,12 @@ class TangentsAlong {
     bool factorised = false;
     for (const bool convexify : {false, true}) {
       Assemble(state, {.position = 1}, convexify);
-      if ((factorised = factor_.Factorise(held_.Decoupled(matrix_)))) break;
+      if ((factorised = factor_.Factorise(matrix_))) break;
     }
     if (!factorised) return std::nullopt;
-    const Eigen::MatrixXd first = SolveFree(factor_, order_, held_, right);
+    const Eigen::MatrixXd first = factor_.Solve(right);
     Eigen::MatrixXd both(right.rows(), 2 * right.cols());
-    both << first, SolveFree(factor_, order_, held_, Massed(body, first));
+    both << first, factor_.Solve(Massed(body, first));
     return both;
   }
 
@@ -83,9 +80,7 @@ class TangentsAlong {
   const Model& model_;
   double time_step_;
   bool has_inertia_;
-  HeldComponents held_;
-  EliminationOrder order_;
-  CholmodFactor factor_;
+  FreeComponentFactor factor_;
   BlockMatrix matrix_;
 };
 

@@ -4,7 +4,9 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "fem/held_components.h"
@@ -15,9 +17,11 @@
 namespace lacuna {
 namespace {
 
+// The components that the grips hold. Throws InputError where the constructor of Stepper does.
 HeldComponents CheckedHeldComponents(const Model& model) {
   const int nodes = model.body->NodeCount();
-  std::vector<AxisSet> held(nodes), at_rest(nodes);  // at_rest: by supports along some axes only
+  // Along which axes each node is held at all, and by supports at rest along some axes only.
+  std::vector<AxisSet> held(nodes), at_rest(nodes);
   for (const Grip& grip : model.grips) {
     const bool may_share = !grip.motion && grip.axes.IsPartial();
     for (const int node : grip.nodes) {
@@ -35,7 +39,7 @@ HeldComponents CheckedHeldComponents(const Model& model) {
   return HeldComponents(std::move(held));
 }
 
-// Returns `position` with the gripped nodes at the positions that their grips prescribe at `time`.
+// `position` with the gripped nodes at the positions that their grips prescribe at `time`.
 Eigen::VectorXd Gripped(const Model& model, double time, Eigen::VectorXd position) {
   for (const Grip& grip : model.grips) {
     Eigen::Matrix3Xd places(3, grip.nodes.size());
@@ -51,6 +55,17 @@ Eigen::VectorXd Gripped(const Model& model, double time, Eigen::VectorXd positio
       for (int axis = 0; axis < 3; ++axis)
         if (grip.axes.Has(axis)) position[3 * grip.nodes[k] + axis] = places(axis, k);
   }
+  return position;
+}
+
+// The position to which constant acceleration would lead; in statics, that at the start.
+Eigen::VectorXd FirstGuess(const StepEquation& equation, const MotionHistory& history) {
+  Eigen::VectorXd position = history.position;
+  if (!equation.has_inertia()) return position;
+  const double time_step = equation.time_step();
+  position += time_step * history.velocity;
+  if (history.acceleration.size() > 0)
+    position += 0.5 * time_step * time_step * history.acceleration;
   return position;
 }
 
@@ -79,16 +94,22 @@ struct Stepper::Implementation {
         tangent(model.body->pattern),
         missing_mass(DescribeMissingMass(model)) {}
 
-  NewtonSummary Solve(const StepEquation& equation, const Eigen::VectorXd& force,
-                      const Eigen::VectorXd& target, double tolerance, Eigen::VectorXd* position) {
-    const NewtonProblem problem{equation, force, held, tolerance, options.max_iterations};
+  // Where Newton's method has led to.
+  struct StepEnd {
+    NewtonSummary newton;
+    Eigen::VectorXd position;  // 3n, m
+    int inverted = -1;         // an inverted element that is refused; −1: none
+    bool IsUsable() const { return newton.IsUsable() && inverted < 0; }
+  };
+
+  NewtonSummary Solve(const NewtonProblem& problem, const Eigen::VectorXd& target,
+                      Eigen::VectorXd* position) {
     return SolveByNewton(problem, target, &solver, &tangent, position);
   }
 
   // Continuation from the start, which an applied force r(start) holds in balance, to the wanted
   // state: that force is removed and the grips are moved in fractions.
-  NewtonSummary SolveByIncrements(const StepEquation& equation, const Eigen::VectorXd& force,
-                                  const Eigen::VectorXd& target, double tolerance,
+  NewtonSummary SolveByIncrements(const NewtonProblem& problem, const Eigen::VectorXd& target,
                                   Eigen::VectorXd* position) {
     constexpr double kSmallestIncrement = 1.0 / 512;
     // Limits the total number of iterations, as a multiple of those of one solution. Continuations
@@ -97,17 +118,19 @@ struct Stepper::Implementation {
     constexpr int kMostSolutions = 4;
     const Eigen::VectorXd start = *position;
     Eigen::VectorXd imbalance;
-    equation.Residual(start, &imbalance);
-    imbalance -= force;
+    problem.equation.Residual(start, &imbalance);
+    imbalance -= problem.applied_force;
     double reached = 0, increment = 0.25;
     NewtonSummary summary;
     int iterations = 0;
     while (reached < 1) {
       const double aim = std::min(1.0, reached + increment);
+      const Eigen::VectorXd force = problem.applied_force + (1 - aim) * imbalance;
       Eigen::VectorXd trial = *position;
       solver.DropFactor();
-      summary = Solve(equation, force + (1 - aim) * imbalance, start + aim * (target - start),
-                      tolerance, &trial);
+      summary = Solve({problem.equation, force, problem.held, problem.relative_tolerance,
+                       problem.max_iterations},
+                      start + aim * (target - start), &trial);
       iterations += summary.iterations;
       if (summary.IsUsable()) {
         reached = aim;
@@ -116,7 +139,7 @@ struct Stepper::Implementation {
       } else {
         increment *= 0.5;
         if (increment < kSmallestIncrement ||
-            iterations >= kMostSolutions * options.max_iterations) {
+            iterations >= kMostSolutions * problem.max_iterations) {
           summary.message += fmt::format("; {:.1f} % of the load could be applied", 100 * reached);
           break;
         }
@@ -126,6 +149,25 @@ struct Stepper::Implementation {
     return summary;
   }
 
+  StepEnd EndAt(NewtonSummary newton, Eigen::VectorXd position) const {
+    const bool is_checked = options.refuse_inverted && newton.IsUsable();
+    const int inverted = is_checked ? FindInvertedElement(*model.body, position) : -1;
+    return {std::move(newton), std::move(position), inverted};
+  }
+
+  // The end of a step, in increments if it is not reached directly.
+  StepEnd FindEnd(const NewtonProblem& problem, const Eigen::VectorXd& target,
+                  const MotionHistory& history) {
+    Eigen::VectorXd position = FirstGuess(problem.equation, history);
+    NewtonSummary newton = Solve(problem, target, &position);
+    StepEnd direct = EndAt(std::move(newton), std::move(position));
+    if (direct.IsUsable()) return direct;
+    position = history.position;
+    newton = SolveByIncrements(problem, target, &position);
+    newton.iterations += direct.newton.iterations;
+    return EndAt(std::move(newton), std::move(position));
+  }
+
   StepSummary Take(TimeScheme scheme, double time_step, const Eigen::VectorXd& external_force,
                    double tolerance, MotionHistory* history) {
     const Eigen::Index size = history->position.size();
@@ -133,54 +175,43 @@ struct Stepper::Implementation {
     const Eigen::VectorXd force =
         external_force.size() > 0 ? external_force : Eigen::VectorXd::Zero(size);
     const StepEquation equation(model, *history, scheme, time_step);
-    StepSummary result;
-    if (!missing_mass.empty()) {
-      result.status = StepSummary::Status::kMissingMass;
-      result.message = missing_mass;
-      return result;
-    }
+    if (!missing_mass.empty()) return NotTaken(StepSummary::Status::kMissingMass, missing_mass);
     const Eigen::VectorXd target = Gripped(model, equation.end_time(), history->position);
     if (!target.allFinite() || !force.allFinite()) {
-      result.status = StepSummary::Status::kNoConvergence;
-      result.message = fmt::format(
-          "at {:.6g} s: a grip's position or an external force is not finite", equation.end_time());
-      return result;
+      return NotTaken(
+          StepSummary::Status::kNoConvergence,
+          fmt::format("at {:.6g} s: a grip's position or an external force is not finite",
+                      equation.end_time()));
     }
     const int factorisations_before = solver.factorisations();
-    // Start from the position that constant acceleration would lead to.
-    Eigen::VectorXd position = history->position;
-    if (equation.has_inertia()) {
-      position += time_step * history->velocity;
-      if (history->acceleration.size() > 0)
-        position += 0.5 * time_step * time_step * history->acceleration;
+    const StepEnd end =
+        FindEnd({equation, force, held, tolerance, options.max_iterations}, target, *history);
+    StepSummary summary = Summarise(end, equation.end_time());
+    summary.factorisations = solver.factorisations() - factorisations_before;
+    if (summary.IsUsable()) *history = equation.Advance(end.position);
+    return summary;
+  }
+
+  static StepSummary NotTaken(StepSummary::Status status, const std::string& why) {
+    StepSummary summary;
+    summary.status = status;
+    summary.message = why;
+    return summary;
+  }
+
+  // The summary of a step that ends at `time`, s, without its factorisations.
+  static StepSummary Summarise(const StepEnd& end, double time) {
+    StepSummary summary;
+    summary.iterations = end.newton.iterations;
+    summary.residual = end.newton.residual;
+    summary.status = StepStatus(end.newton.status);
+    if (!end.newton.IsUsable()) {
+      summary.message = fmt::format("at {:.6g} s: {}", time, end.newton.message);
+    } else if (end.inverted >= 0) {
+      summary.status = StepSummary::Status::kInvertedElement;
+      summary.message = fmt::format("at {:.6g} s: element {} is inverted", time, end.inverted);
     }
-    NewtonSummary solved = Solve(equation, force, target, tolerance, &position);
-    const auto find_inverted = [&] {
-      return options.refuse_inverted && solved.IsUsable()
-                 ? FindInvertedElement(*model.body, position)
-                 : -1;
-    };
-    int inverted = find_inverted();
-    if (!solved.IsUsable() || inverted >= 0) {
-      const int iterations = solved.iterations;
-      position = history->position;
-      solved = SolveByIncrements(equation, force, target, tolerance, &position);
-      solved.iterations += iterations;
-      inverted = find_inverted();
-    }
-    result.iterations = solved.iterations;
-    result.factorisations = solver.factorisations() - factorisations_before;
-    result.residual = solved.residual;
-    result.status = StepStatus(solved.status);
-    if (!solved.IsUsable()) {
-      result.message = fmt::format("at {:.6g} s: {}", equation.end_time(), solved.message);
-    } else if (inverted >= 0) {
-      result.status = StepSummary::Status::kInvertedElement;
-      result.message =
-          fmt::format("at {:.6g} s: element {} is inverted", equation.end_time(), inverted);
-    }
-    if (result.IsUsable()) *history = equation.Advance(position);
-    return result;
+    return summary;
   }
 
   const Model model;

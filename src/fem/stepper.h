@@ -7,9 +7,8 @@
 #define LACUNA_FEM_STEPPER_H_
 
 #include <Eigen/Core>
-#include <functional>
+#include <memory>
 #include <string>
-#include <vector>
 
 #include "fem/linear_solver.h"
 #include "fem/model.h"

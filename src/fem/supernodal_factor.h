@@ -45,9 +45,15 @@ class SupernodalFactor {
     int column = 0;
   };
 
+  // Steps of the symbolic analysis: the entries of the matrix that each front receives, and the
+  // places of panels, update matrices and vectors in memory.
+  void ListEntries(const BlockPattern& pattern);
   void PlaceInMemory();
-  Pivots EliminateFront(int s, const BlockMatrix& matrix);
+  // The front of supernode s is the sum of the entries of the matrix and of the update matrices of
+  // the children; its columns are then eliminated.
   void AssembleFront(int s, const BlockMatrix& matrix);
+  Pivots EliminateFront(int s, const BlockMatrix& matrix);
+  // The substitutions at supernode s.
   void SolveForward(int s, const float* b);
   void SolveBackward(int s, float* x);
   // Call visit(s) for each supernode with children first, or with parents first; subtrees in

@@ -7,10 +7,7 @@
 namespace lacuna {
 
 TangentSolver::TangentSolver(const BlockPattern& pattern, HeldComponents held, double tolerance)
-    : held_(std::move(held)),
-      order_(NestedDissection(pattern, held_.whole_nodes())),
-      factor_(pattern, order_),
-      tolerance_(tolerance) {}
+    : factor_(pattern, std::move(held)), tolerance_(tolerance) {}
 
 bool TangentSolver::AddSolution(const TangentSystem& system, Eigen::MatrixXd* sum) {
   const Eigen::Index columns = system.right.cols();
@@ -27,13 +24,13 @@ bool TangentSolver::AddSolution(const TangentSystem& system, Eigen::MatrixXd* su
       is_done = 1;
     });
   };
-  if (factor_.Factorise(held_.Decoupled(system.tangent)))
+  if (factor_.Factorise(system.tangent))
     for_unsolved([&](const ColumnGroup& group) { return SolveByTangent(system, group); });
   if (is_solved()) return true;
-  if (factor_.Factorise(held_.Decoupled(system.approximation())))
+  if (factor_.Factorise(system.approximation()))
     for_unsolved([&](const ColumnGroup& group) { return SolveByApproximation(system, group); });
   if (is_solved()) return true;
-  const UnsymmetricFactor whole(held_, system.tangent, system.skew);
+  const UnsymmetricFactor whole(held(), system.tangent, system.skew);
   if (whole.IsUsable())
     for_unsolved([&](const ColumnGroup& group) { return SolveByWhole(whole, system, group); });
   return is_solved();
@@ -42,8 +39,8 @@ bool TangentSolver::AddSolution(const TangentSystem& system, Eigen::MatrixXd* su
 std::optional<Eigen::MatrixXd> TangentSolver::SolveByTangent(const TangentSystem& system,
                                                              const ColumnGroup& group) const {
   Eigen::MatrixXd wanted = group.Of(system.right);
-  if (system.skew == nullptr) return SolveFree(factor_, order_, held_, wanted);
-  held_.ClearIn(wanted);
+  if (system.skew == nullptr) return factor_.Solve(wanted);
+  held().ClearIn(wanted);
   const BlockMatrix& skew = *system.skew;
   // The contribution of the skew part changes little from one step to the next.
   Eigen::MatrixXd expected = system.expected(group);
@@ -57,7 +54,7 @@ std::optional<Eigen::MatrixXd> TangentSolver::SolveByTangent(const TangentSystem
 std::optional<Eigen::MatrixXd> TangentSolver::SolveByApproximation(const TangentSystem& system,
                                                                    const ColumnGroup& group) const {
   Eigen::MatrixXd wanted = group.Of(system.right);
-  held_.ClearIn(wanted);
+  held().ClearIn(wanted);
   return Refine(wanted, wanted, [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
     *residual -= system.tangent * step;
     if (system.skew != nullptr) *residual -= *system.skew * step;
@@ -68,11 +65,11 @@ std::optional<Eigen::MatrixXd> TangentSolver::SolveByWhole(const UnsymmetricFact
                                                            const TangentSystem& system,
                                                            const ColumnGroup& group) const {
   Eigen::MatrixXd wanted = group.Of(system.right);
-  held_.ClearIn(wanted);
+  held().ClearIn(wanted);
   const Eigen::MatrixXd solution = whole.Solve(wanted);
   Eigen::MatrixXd residual = wanted - system.tangent * solution;
   if (system.skew != nullptr) residual -= *system.skew * solution;
-  held_.ClearIn(residual);
+  held().ClearIn(residual);
   const Eigen::RowVectorXd small = tolerance_ * wanted.colwise().norm();
   if ((residual.colwise().norm().array() <= small.array()).all()) return solution;
   return std::nullopt;
@@ -87,13 +84,13 @@ std::optional<Eigen::MatrixXd> TangentSolver::Refine(const Eigen::MatrixXd& want
   constexpr int kMaxIterations = 60;
   const Eigen::RowVectorXd small = tolerance_ * wanted.colwise().norm();
   Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(wanted.rows(), wanted.cols());
-  held_.ClearIn(residual);
+  held().ClearIn(residual);
   double last = residual.norm();
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    const Eigen::MatrixXd step = SolveFree(factor_, order_, held_, residual);
+    const Eigen::MatrixXd step = factor_.Solve(residual);
     solution += step;
     update(step, &residual);
-    held_.ClearIn(residual);
+    held().ClearIn(residual);
     if ((residual.colwise().norm().array() <= small.array()).all()) return solution;
     if (!(residual.norm() < 2 * last)) break;
     last = residual.norm();

@@ -15,8 +15,7 @@
 
 #include "core/parallel.h"
 #include "fem/block_matrix.h"
-#include "fem/cholmod_factor.h"
-#include "fem/elimination_order.h"
+#include "fem/free_component_factor.h"
 #include "fem/held_components.h"
 #include "fem/unsymmetric_factor.h"
 
@@ -62,7 +61,7 @@ class TangentSolver {
   // its right-hand side. Larger values take fewer iterations.
   TangentSolver(const BlockPattern& pattern, HeldComponents held, double tolerance);
 
-  const HeldComponents& held() const { return held_; }
+  const HeldComponents& held() const { return factor_.held(); }
 
   // Adds the solution at the free components to `sum` (3n × columns). Returns false where the
   // tangent is singular; `sum` is then incomplete.
@@ -82,9 +81,7 @@ class TangentSolver {
   std::optional<Eigen::MatrixXd> Refine(const Eigen::MatrixXd& wanted, Eigen::MatrixXd residual,
                                         const Update& update) const;
 
-  HeldComponents held_;
-  EliminationOrder order_;
-  CholmodFactor factor_;
+  FreeComponentFactor factor_;
   double tolerance_;
 };
 

@@ -101,6 +101,16 @@ TEST(Catalogue, GivesEachDrawnSettingOfAnEffectItsOwnDraw) {
   }
 }
 
+// Either from its parameter values or from YAML; `make` alone tells which.
+TEST(Catalogue, MakesEachEffectInOneWay) {
+  for (const CatalogueEntry& entry : Catalogue()) {
+    const bool from_values = entry.make != nullptr;
+    EXPECT_EQ(entry.read != nullptr, from_values) << entry.card->type;
+    EXPECT_EQ(entry.make_from_yaml == nullptr, from_values) << entry.card->type;
+    EXPECT_EQ(entry.format == nullptr, from_values) << entry.card->type;
+  }
+}
+
 TEST(Catalogue, MakesAMaterialFromYaml) {
   const Config config = Config::Parse(
       "material: {law: neo_hookean, young_modulus: 0.1 MPa, poisson_ratio: 0.3}\n", "a.yaml");

@@ -1,6 +1,6 @@
 // What every physical effect must satisfy, checked with one call.
-#ifndef LACUNA_SUPPORT_CHECK_EFFECT_H_
-#define LACUNA_SUPPORT_CHECK_EFFECT_H_
+#ifndef LACUNA_TESTS_SUPPORT_CHECK_EFFECT_H_
+#define LACUNA_TESTS_SUPPORT_CHECK_EFFECT_H_
 
 #include <Eigen/Core>
 #include <set>
@@ -39,7 +39,7 @@ Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::Vec
 //  - AddTangents and AddSkewTangents together, and AddParameterDerivative, agree with central
 //    differences, for all weights and every parameter that is not a setting, and are not simply
 //    zero; they add into what is there, in proportion to the weight;
-//  - the stand-in of `convexify` is symmetric and definite;
+//  - the tangent with `convexify` is symmetric and negative semi-definite;
 //  - forces and torques sum to zero where the card says so; then the forces are the same, but
 //    turned, in a frame that is turned, shifted and spinning;
 //  - forces and tangents are bit-identical for one and for two threads.
@@ -47,4 +47,4 @@ void CheckEffect(const Effect* effect, const CheckEffectOptions& options = {});
 
 }  // namespace lacuna
 
-#endif  // LACUNA_SUPPORT_CHECK_EFFECT_H_
+#endif  // LACUNA_TESTS_SUPPORT_CHECK_EFFECT_H_
