@@ -36,8 +36,9 @@ struct StepCheck {
   }
 };
 
+// Takes a prediction with the step of `problem` and one with half of it from the budget.
 StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                    Progress* progress) {
+                    FitBudget* budget, Progress* progress) {
   progress->Begin("time step", 0);
   PredictionStudy half = problem.WithEstimatedNoise();
   half.time_step /= 2;
@@ -45,7 +46,9 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
   // Both are compared with the same scanned points, so that only the predictions differ.
   constexpr double kWhole = std::numeric_limits<double>::infinity();
   CalibrationProblem::FitMemory same;
+  budget->Spend(1, problem.study().time_step);
   const ResidualEvaluation now = problem.Predict(values, false, kWhole, &same);
+  if (now.usable) budget->Spend(1, half.time_step);
   const ResidualEvaluation then = now.usable ? refined.Predict(values, false, kWhole, &same) : now;
   StepCheck check;
   check.order = OrderOf(half.scheme);
@@ -80,19 +83,20 @@ std::string NoteOn(const StepCheck& check, double time_step, bool is_out_of_step
 }  // namespace
 
 AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress,
-                                   FitStore* kept) {
+                                   FitStore* kept, FitBudget* budget) {
   AdaptedFit fit;
-  FitBudget budget(study->time_step);
+  FitBudget own(study->time_step);
+  FitBudget& spent = budget != nullptr ? *budget : own;
   Calibration beginning;
   if (study->chooses_time_step) {
     // A first estimate of the step, from the short horizon.
     PredictionStudy further;
     {
       const CalibrationProblem problem(*study, mesh);
-      beginning = FitShortHorizon(problem, problem.Start(), progress, &budget, kept);
+      beginning = FitShortHorizon(problem, problem.Start(), progress, &spent, kept);
       further = problem.WithEstimatedNoise();
       if (beginning.usable)
-        further.time_step *= CheckStep(problem, beginning.parameters, progress).Share();
+        further.time_step *= CheckStep(problem, beginning.parameters, &spent, progress).Share();
     }
     *study = std::move(further);
   }
@@ -106,23 +110,22 @@ AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study, 
       const bool goes_on = !fit.calibration.estimates.empty();
       const bool has_begun = tried == 1 && beginning.parameters.size() > 0;
       fit.calibration =
-          goes_on
-              ? RefineFit(problem, fit.calibration.parameters, progress, &budget, kept)
-              : FitFromStart(problem, progress, has_begun ? &beginning : nullptr, &budget, kept);
+          goes_on ? RefineFit(problem, fit.calibration.parameters, progress, &spent, kept)
+                  : FitFromStart(problem, progress, has_begun ? &beginning : nullptr, &spent, kept);
       if (!goes_on) start_rms = fit.calibration.start_rms;
       predictions += fit.calibration.predictions;
       fit.calibration.predictions = predictions;
       fit.calibration.start_rms = start_rms;
       if (!study->chooses_time_step) return fit;
       if (!fit.calibration.estimates.empty()) {
-        check = CheckStep(problem, fit.calibration.parameters, progress);
+        check = CheckStep(problem, fit.calibration.parameters, &spent, progress);
         fit.step_error = check.error;
         if (check.Share() == 1) return fit;
       }
       further = problem.WithEstimatedNoise();
       further.time_step *= check.Share();
       const bool is_out_of_steps = tried == kMostSteps;
-      if (is_out_of_steps || budget.IsUsedUp(further.time_step)) {
+      if (is_out_of_steps || spent.IsUsedUp(further.time_step)) {
         if (!fit.calibration.estimates.empty())
           fit.note = NoteOn(check, study->time_step, is_out_of_steps);
         return fit;

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "calibration/calibration_fits.h"
 #include "calibration/calibration_problem.h"
 #include "calibration/fit_store.h"
 #include "core/progress.h"
@@ -24,10 +25,10 @@ struct AdaptedFit {
 // FitFromStart (calibration_fits.h). Where the study does not give a step, it is shortened until
 // step_error is small against the noise or the model's residual, and the fit is continued
 // each time. The search ends early after eight step lengths, or where the budget of the fit is used
-// up. `study` receives the step that was chosen. `kept`: as in calibration_fits.h. Throws
-// Interrupted.
+// up, which pays for the estimates of step_error, too. `study` receives the step that was chosen.
+// `kept` and `budget`: as in calibration_fits.h. Throws Interrupted.
 AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress,
-                                   FitStore* kept = nullptr);
+                                   FitStore* kept = nullptr, FitBudget* budget = nullptr);
 
 }  // namespace lacuna
 

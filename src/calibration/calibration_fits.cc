@@ -49,7 +49,7 @@ double LargestChange(const std::vector<CalibratedParameter>& parameters,
 double BeginningOfMotion(const RecordingModel& model, const std::vector<int>& frames) {
   constexpr double kHardly = 0.03;  // fraction of the largest displacement that counts as rest
   if (model.recording().ShowsScans()) return 0;
-  const Recording& recording = model.recording().recording;
+  const Recording& recording = model.measured();
   const Eigen::Matrix3Xd& first = recording.markers.positions[frames.front()];
   std::vector<double> moved;  // for each frame: m, largest displacement of a marker
   for (const int frame : frames) {
@@ -63,13 +63,7 @@ double BeginningOfMotion(const RecordingModel& model, const std::vector<int>& fr
       std::find_if(moved.begin(), moved.end(), [&](double distance) { return distance > least; });
   if (moving == moved.begin() || moving == moved.end()) return 0;
   const int last = frames[static_cast<size_t>(moving - moved.begin()) - 1];
-  return std::max(0.0, recording.times[last] - model.recording().StartTime());
-}
-
-// The rms of the whitened residual; infinite where the prediction is not usable.
-double RmsAt(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
-  const ResidualEvaluation prediction = problem.Predict(values, /*with_jacobian=*/false);
-  return prediction.usable ? RootMeanSquare(prediction) : kUnlimited;
+  return std::max(0.0, model.FrameTime(last) - model.recording().StartTime());
 }
 
 // Stages of one fit, whose predictions are counted together.
@@ -83,6 +77,14 @@ class Fitter {
         kept_(kept) {}
 
   bool IsOutOfBudget() const { return budget_.IsUsedUp(TimeStep()); }
+
+  // The rms of the whitened residual over all fitted frames; infinite where the prediction is not
+  // usable. It takes one prediction of the budget.
+  double RmsAt(const Eigen::VectorXd& values) {
+    budget_.Spend(1, TimeStep());
+    const ResidualEvaluation prediction = problem_.Predict(values, /*with_jacobian=*/false);
+    return prediction.usable ? RootMeanSquare(prediction) : kUnlimited;
+  }
 
   Calibration Stage(const std::string& name, double horizon, const Eigen::VectorXd& start) {
     progress_.Begin(name, 0);
@@ -110,9 +112,8 @@ class Fitter {
     if (problem_.study().explained_misfit == 0 || problem_.HasScans()) return judged;
     progress_.Begin("fit from the diagnosis", 0);
     judged.parameters = start;
-    judged.rms = RmsAt(problem_, start);
+    judged.rms = RmsAt(start);
     ++evaluations_;
-    budget_.Spend(1, TimeStep());
     if (judged.rms > kLocalMinimumSuspected)
       judged = FitOnce(kUnlimited, start, {.max_iterations = kIterationsOfHeld}, Fits::kRecordings);
     judged.usable = judged.parameters.size() > 0 && judged.rms <= kLocalMinimumSuspected;
@@ -130,7 +131,7 @@ class Fitter {
     const Eigen::VectorXd& near = beginning.parameters.size() > 0 ? beginning.parameters : start;
     Calibration calibration = Stage("fit", kUnlimited, near);
     // The initial error is that at the caller's start values, not at the end of the first part.
-    calibration.start_rms = RmsAt(problem_, start);
+    calibration.start_rms = RmsAt(start);
     return calibration;
   }
 
@@ -255,8 +256,7 @@ double ShortHorizon(const CalibrationProblem& problem) {
     const std::vector<int> frames = model.recording().FittedFrames();
     if (frames.empty()) continue;
     const double rest = BeginningOfMotion(model, frames);
-    const double whole =
-        model.recording().recording.times[frames.back()] - model.recording().StartTime();
+    const double whole = model.FrameTime(frames.back()) - model.recording().StartTime();
     longest = std::max(longest, rest + kShortHorizon * (whole - rest));
   }
   return longest;
@@ -311,7 +311,7 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
     if (other == start || fitter.IsOutOfBudget()) break;
     Calibration first = fitter.Beginning(
         fmt::format("fit, moduli from {:g} times their start values", factor), other);
-    const double rms = first.estimates.empty() ? kUnlimited : RmsAt(problem, first.parameters);
+    const double rms = first.estimates.empty() ? kUnlimited : fitter.RmsAt(first.parameters);
     if (rms >= least) continue;
     least = rms;
     nearest = std::move(first);

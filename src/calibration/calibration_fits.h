@@ -20,8 +20,8 @@ namespace lacuna {
 // How much work a fit may take, so that one that cannot succeed ends: a model that lacks what
 // dominates the motion has no minimum near the noise, and would be searched from one start after
 // another with ever shorter time steps. The unit is a prediction with the time step with which the
-// budget began; one with half the step counts twice. The count, unlike a time limit, does not
-// depend on the machine.
+// budget began; one with half the step counts twice. Predictions that only judge start values or a
+// time step count, too. The count, unlike a time limit, does not depend on the machine.
 class FitBudget {
  public:
   // Four times what the longest of the bundled experiments takes. Larger: later giving up.

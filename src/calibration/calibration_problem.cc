@@ -25,7 +25,7 @@ std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& par
   std::vector<MisfitDirection> directions;
   for (const ModelParameter& parameter : parameters)
     for (const auto& [effect, index] : parameter.places)
-      directions.push_back({.perturbation = ByParameter(effects[effect], index)});
+      directions.push_back({.perturbation = ParameterPerturbation(effects[effect], index)});
   return directions;
 }
 
@@ -249,9 +249,8 @@ ResidualEvaluation CalibrationProblem::PredictRecording(size_t recording,
                                                         Misfit* misfit) const {
   const RecordingModel model = ModelAt(recording, values);
   std::vector<int> frames = model.recording().FittedFrames();
-  const std::vector<double>& times = model.recording().recording.times;
   const double start = model.recording().StartTime();
-  std::erase_if(frames, [&](int frame) { return times[frame] > start + horizon; });
+  std::erase_if(frames, [&](int frame) { return model.FrameTime(frame) > start + horizon; });
   std::vector<MisfitDirection> directions;
   if (with_jacobian) directions = DirectionsFor(model, {});
   *misfit = model.Predict(frames, NuisanceOf(recording, values), directions, hints);

@@ -24,7 +24,7 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage, or its files.
-constexpr int kCalibrationVersion = 33;
+constexpr int kCalibrationVersion = 34;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.

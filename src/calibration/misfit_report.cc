@@ -32,7 +32,7 @@ CsvTable MisfitTable(const CalibrationProblem& problem,
         }
         const double row[] = {static_cast<double>(r),
                               static_cast<double>(frame),
-                              model.recording().recording.times[frame],
+                              model.FrameTime(frame),
                               static_cast<double>(m),
                               static_cast<double>(recording.fitted[f]),
                               measured[0],

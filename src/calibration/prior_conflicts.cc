@@ -93,9 +93,9 @@ void AddScanConflicts(const ScanSettings& scan, const RecordingMisfit& misfit,
         misfit.place_offset.cwiseAbs().maxCoeff(), scan.shape_deviation});
   const std::vector<int> lost = model.LostFrames(misfit.misfit, kFewestCompared);
   if (!lost.empty())
-    conflicts->emplace_back(UnmatchedScans{
-        misfit.name, static_cast<int>(lost.size()), static_cast<int>(misfit.misfit.frames.size()),
-        model.recording().recording.times[lost.front()], kFewestCompared});
+    conflicts->emplace_back(UnmatchedScans{misfit.name, static_cast<int>(lost.size()),
+                                           static_cast<int>(misfit.misfit.frames.size()),
+                                           model.FrameTime(lost.front()), kFewestCompared});
 }
 
 }  // namespace

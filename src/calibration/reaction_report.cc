@@ -54,14 +54,13 @@ CsvTable ReactionTable(const CalibrationProblem& problem,
   for (size_t r = 0; r < misfits.size(); ++r) {
     const RecordingModel& model = problem.models()[r];
     const Misfit& misfit = misfits[r].misfit;
-    const std::vector<double>& times = model.recording().recording.times;
     const double delay = model.Delay(misfits[r].nuisance);
     for (size_t k = 0; k < misfit.reactions.size(); ++k) {
       const MeasuredReaction& reading = model.Reactions()[k];
       if (reading.is_torque != torques) continue;
       const double late = delay + model.CellDelay(k, misfits[r].nuisance);
       for (size_t f = 0; f < misfit.frames.size(); ++f) {
-        const double time = times[misfit.frames[f]];
+        const double time = model.FrameTime(misfit.frames[f]);
         const Eigen::VectorXd moved = reading.directions.transpose() *
                                       RelativeMotion(model.model(), reading.held, time - late,
                                                      torques ? GripRotation : GripDisplacement);

@@ -105,8 +105,8 @@ Eigen::MatrixXd ChangesBySize(const CalibrationProblem& problem, const Eigen::Ve
     is_usable[static_cast<size_t>(k)] = 1;
   };
   const int64_t count = static_cast<int64_t>(is_usable.size());
-  // Where each study predicts one recording only, several recordings are no reason to predict the
-  // studies one after another.
+  // Studies that predict one recording each have no loop over recordings to share among the threads
+  // (side_by_side.h), so that they run side by side however many recordings the problem has.
   const bool has_one_each =
       std::all_of(groups.begin(), groups.end(),
                   [](const StretchedRecordings& group) { return group.recordings.size() == 1; });

@@ -44,13 +44,13 @@ bool MatchesFittedMarkers(const RecordedResiduals& residuals, const ReplayedMoti
   std::vector<double> seen;
   for (Eigen::Index f = 0; f < shown.cols(); ++f)
     for (int m = 0; m < markers; ++m) seen.push_back(shown.col(f).segment<3>(3 * m).allFinite());
-  const Eigen::MatrixXd places =
-      CommonError(shown.reshaped(), seen, markers, {noise, kAnyPlace},
-                  std::vector<char>(static_cast<size_t>(shown.cols()), 1), motion.deformation);
+  const Eigen::MatrixXd places = CommonError(
+      shown.reshaped(), seen, markers, {noise, kAnyPlace},
+      std::vector<char>(static_cast<size_t>(shown.cols()), 1), motion.misfit.deformation);
   for (size_t k = 0; k < seen.size(); ++k) {
     const Eigen::Index m = static_cast<Eigen::Index>(k) % markers;
     const Eigen::Vector3d other = shown.reshaped().segment<3>(3 * static_cast<Eigen::Index>(k)) -
-                                  motion.deformation[k] * places.col(m);
+                                  motion.misfit.deformation[k] * places.col(m);
     if (seen[k] && other.cwiseAbs().maxCoeff() > kSameMotion * noise) return false;
   }
   return true;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prediction/observed_response.h"
+
 namespace lacuna {
 namespace {
 
@@ -15,12 +17,6 @@ int FrameStride(int frames, Eigen::Index rows_of_frame, int knots) {
       std::max(2 * knots, static_cast<int>(kMostEntries / (static_cast<double>(rows_of_frame) *
                                                            SmoothForce::kShapes * knots)));
   return (frames + most - 1) / most;
-}
-
-// Vectors of the nodes, stacked in the columns, in turned coordinates.
-Eigen::MatrixXd TurnedColumns(const Eigen::Matrix3d& turn, const Eigen::MatrixXd& stacked) {
-  const Eigen::Matrix3Xd turned = turn * stacked.reshaped(3, stacked.size() / 3);
-  return turned.reshaped(stacked.rows(), stacked.cols());
 }
 
 }  // namespace
@@ -52,8 +48,8 @@ ForceLinearisation::ForceLinearisation(const RecordingModel& recording,
   const int stride = FrameStride(frames, RowsOfFrame(), field.KnotCount());
   for (int frame = 0; frame < frames; frame += stride) {
     frames_.push_back(frame);
-    if (motion.deformation.empty()) continue;
-    const auto at_markers = motion.deformation.begin() + frame * points;
+    if (motion.misfit.deformation.empty()) continue;
+    const auto at_markers = motion.misfit.deformation.begin() + frame * points;
     deformation_.insert(deformation_.end(), at_markers, at_markers + points);
   }
 }
@@ -103,10 +99,6 @@ double ForceLinearisation::Rms(const ReplayedMotion& motion) const {
 
 Eigen::MatrixXd ForceLinearisation::ForceRows(const ReplayedMotion& motion,
                                               const ReducedResponse& response) const {
-  std::vector<double> times;
-  for (const int frame : frames_)
-    times.push_back(recording_.recording().recording.times[recording_.recording().frames[frame]] -
-                    motion.delay);
   const Eigen::Index forces = field_.amplitudes.size(), nuisances = prior_deviations_.size();
   const ForceHistories hat_functions = [&](double time) {
     Eigen::MatrixXd amplitude = Eigen::MatrixXd::Zero(shapes_.cols(), forces + nuisances);
@@ -116,23 +108,8 @@ Eigen::MatrixXd ForceLinearisation::ForceRows(const ReplayedMotion& motion,
   Eigen::MatrixXd held = hat_functions(field_.start);
   for (Eigen::Index k = 0; k < nuisances; ++k)
     if (held_shape_[k] >= 0) held(held_shape_[k], forces + k) = 1;
-  const Eigen::MatrixXd basis = TurnedColumns(motion.registration.linear(), response.basis());
-  const ObservationMatrix* observed = nullptr;  // those of markers are the same in all frames
-  Eigen::MatrixXd at_points;
-  Eigen::MatrixXd rows(Rows(), forces + nuisances);
-  response.Respond(held, hat_functions, times,
-                   [&](int index, const Eigen::MatrixXd& position, const Eigen::MatrixXd&) {
-                     const Observed& seen =
-                         motion.misfit.observed[static_cast<size_t>(frames_[index])];
-                     if (seen.rows.get() != observed) at_points = *seen.rows * basis;
-                     observed = seen.rows.get();
-                     auto frame = rows.middleRows(RowsOfFrame() * index, RowsOfFrame());
-                     frame = at_points * position;
-                     for (int point = 0; point < recording_.PointCount(); ++point)
-                       if (seen.count[point] == 0)
-                         frame.middleRows(components_ * point, components_).setZero();
-                   });
-  return rows;
+  return ObservedResponse(recording_, motion, response, held, hat_functions, frames_,
+                          motion.misfit.observed);
 }
 
 LinearisedForce ForceLinearisation::Linearise(const ReplayedMotion& motion,

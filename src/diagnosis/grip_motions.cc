@@ -59,7 +59,7 @@ MisfitDirection StrainMotion(const GripNodes& grip, const Eigen::Matrix3Xd& rest
 
 bool Deforms(const CalibrationProblem& problem, size_t grip) {
   return std::any_of(problem.models().begin(), problem.models().end(), [&](const auto& model) {
-    const RecordedGrip* recorded = RecordedAs(model.recording().recording, grip);
+    const RecordedGrip* recorded = RecordedAs(model.measured(), grip);
     return recorded != nullptr && recorded->deforms;
   });
 }

@@ -69,7 +69,7 @@ bool HasExtent(const CalibrationProblem& problem, size_t grip) {
   return std::all_of(problem.models().begin(), problem.models().end(),
                      [&](const RecordingModel& model) {
                        const auto& grips = model.model().grips;
-                       const RecordedGrip* recorded = RecordedAs(model.recording().recording, grip);
+                       const RecordedGrip* recorded = RecordedAs(model.measured(), grip);
                        const bool follows_scan =
                            recorded != nullptr && recorded->motion == GripMotion::kFollowsScan;
                        return grip < grips.size() && grips[grip].nodes == first.nodes &&

@@ -83,7 +83,7 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   NuisanceCandidate candidate;
   candidate.columns.resize(at.misfit.residual.size(), 0);
   for (const LinearisedMisfit::Part& part : at.misfit.parts) {
-    const Recording& recording = at.problem.models()[part.recording].recording().recording;
+    const Recording& recording = at.problem.models()[part.recording].measured();
     if (!part.IsOfPoints()) continue;
     for (const GripMotions::Grip& own : at.grips.grips) {
       const RecordedGrip* grip = RecordedAs(recording, own.grip);

@@ -117,7 +117,7 @@ void AddBody(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
   const Eigen::Index points = recording.PointCount();
   std::vector<double> times;
   for (const int frame : recording.recording().frames)
-    times.push_back(recording.recording().recording.times[frame] - recording.Delay(nuisance));
+    times.push_back(recording.FrameTime(frame) - recording.Delay(nuisance));
   const Model placed = recording.PlacedModel(nuisance);
   const PredictionSummary summary = Predict(
       placed, recording.Options(nuisance), times, {}, [&](int frame, const PredictedState& state) {

@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/positive_normal.h"
+
 namespace lacuna {
 namespace {
 
@@ -89,11 +91,14 @@ ProjectedHypotheses::Own ProjectedHypotheses::Prepare(const WeighedHypothesis& h
   });
   if (own.taken || columns.empty() || hypothesis.kind == HypothesisKind::kUnknownForce) return own;
   const std::vector<LinearPrior>& priors = space_.model.priors();
-  own.positive = columns.size() == 1 && priors[static_cast<size_t>(columns[0])].positive;
+  for (size_t k = 0; k < columns.size(); ++k)
+    if (priors[static_cast<size_t>(columns[k])].positive)
+      own.positive.push_back(static_cast<Eigen::Index>(k));
   const Eigen::MatrixXd visible = products_(columns, columns);
   const Eigen::Index size = visible.rows();
   const Eigen::VectorXd inverse_prior = InverseSquares(priors, columns);
   own.gain = 0.5 / space_.variance * RegularInverse(visible, space_.variance * inverse_prior);
+  own.covariance = 2 * space_.variance * space_.variance * own.gain;
   const Eigen::VectorXd unit = inverse_prior.cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd spread = unit.asDiagonal() * visible * unit.asDiagonal() / space_.variance;
   spread += Eigen::MatrixXd::Identity(size, size);
@@ -158,10 +163,9 @@ Eigen::VectorXd ProjectedHypotheses::LogBayesFactors(const Eigen::VectorXd& proj
     if (IsForce(space_.hypotheses[h]) && !own.taken) factors[at] = LogBayesFactorOfForce(toward);
     if (own.gain.size() == 0) continue;
     factors[at] = toward.dot(own.gain * toward) - own.occam;
-    if (!own.positive) continue;
-    const double covariance = 2 * space_.variance * space_.variance * own.gain(0, 0);
-    const double value = -covariance * toward[0] / space_.variance;
-    factors[at] += LogTwiceNormal(value / std::sqrt(covariance));
+    if (own.positive.empty()) continue;
+    const Eigen::VectorXd mean = -own.covariance * toward / space_.variance;
+    factors[at] += LogOrthantFactor(mean(own.positive), own.covariance(own.positive, own.positive));
   }
   return factors;
 }
@@ -175,9 +179,9 @@ ProjectedHypotheses::Amounts ProjectedHypotheses::AmountsOf(
   amounts.value = Eigen::VectorXd::Zero(size);
   amounts.covariance = Eigen::MatrixXd::Zero(size, size);
   if (own.gain.size() == 0) return amounts;
-  amounts.covariance = 2 * space_.variance * space_.variance * own.gain;
-  amounts.value = -amounts.covariance * projected(columns) / space_.variance;
-  if (own.positive) amounts.value = amounts.value.cwiseMax(0);
+  amounts.covariance = own.covariance;
+  amounts.value = PositiveMode(-own.covariance * projected(columns) / space_.variance,
+                               own.covariance, own.positive);
   return amounts;
 }
 

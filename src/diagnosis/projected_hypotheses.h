@@ -8,8 +8,10 @@
 // with t = Aᵀr and G = AᵀA. The logarithm of the Bayes factor of a hypothesis with columns h and
 // the prior covariance Q is then
 //   ½ t'_hᵀ (S_hh + v Q⁻¹)⁻¹ t'_h / v − ½ ln det(I + Q S_hh / v).
-// A prior that requires a positive amount is truncated at 0. An unknown smooth force has the prior
-// covariance s² I with unknown s: its Bayes factor is the mean over kForceScales. With the
+// A prior that requires a positive amount is truncated at 0, which adds the logarithm of 2 to the
+// power of the number of such amounts, times the posterior probability that all of them are
+// positive (analysis/positive_normal.h: exact for one and two). An unknown smooth force has the
+// prior covariance s² I with unknown s: its Bayes factor is the mean over kForceScales. With the
 // eigenvalues λ of S_hh and c, the components of t'_h along its eigenvectors, the logarithm for one
 // s is
 //   ½ Σ c²/(λ + v/s²)/v − ½ Σ ln(1 + s² λ/v).
@@ -70,8 +72,8 @@ class ProjectedHypotheses {
   Eigen::VectorXd FactorsOfResidual() const {
     return LogBayesFactors(Project(space_.model.toward()));
   }
-  // The amounts with the largest posterior density of a hypothesis that is not an unknown force,
-  // and their covariance matrix.
+  // The amounts with the largest posterior density of a hypothesis that is not an unknown force, 0
+  // or more where they must be positive, and their covariance matrix without that restriction.
   struct Amounts {
     Eigen::VectorXd value;
     Eigen::MatrixXd covariance;
@@ -84,9 +86,10 @@ class ProjectedHypotheses {
  private:
   struct Own {
     bool taken = false;
-    bool positive = false;
+    std::vector<Eigen::Index> positive;  // amounts that must be positive
     Eigen::MatrixXd gain;  // ½ (S_hh + v Q⁻¹)⁻¹ / v; empty where the hypothesis is not weighed
-    double occam = 0;      // ½ ln det(I + Q S_hh / v)
+    Eigen::MatrixXd covariance;  // of the amounts: v (S_hh + v Q⁻¹)⁻¹
+    double occam = 0;            // ½ ln det(I + Q S_hh / v)
   };
   // The eigenvectors and eigenvalues of S_hh of an unknown force, without those that are rounding;
   // empty where there is none.

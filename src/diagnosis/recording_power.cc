@@ -167,6 +167,17 @@ RecordedPower PowerOf(const DecisionInput& input, const FoundEffect& effect,
   return power;
 }
 
+// Whether `whole` is a pair of effects of which `part` is one: a variant has all its columns.
+bool IsPartOf(const HypothesisSpace& space, const FoundEffect& part, const std::string& whole) {
+  return std::any_of(
+      space.hypotheses.begin(), space.hypotheses.end(), [&](const WeighedHypothesis& variant) {
+        return variant.kind == HypothesisKind::kEffect && variant.name == whole &&
+               std::all_of(part.columns.begin(), part.columns.end(), [&](int column) {
+                 return std::count(variant.columns.begin(), variant.columns.end(), column) > 0;
+               });
+      });
+}
+
 std::vector<FoundEffect> FindAll(const HypothesisSpace& space,
                                  const std::vector<std::string>& effects) {
   std::vector<FoundEffect> found;
@@ -234,14 +245,16 @@ std::vector<RecordedSeparation> SeparationsOf(const HypothesisSpace& space,
     }
     return std::max(0.0, least) / space.variance;
   };
+  const auto smaller = [&](const FoundEffect& a, const FoundEffect& b) {
+    if (IsPartOf(space, a, b.name)) return distance(b, a.name);
+    if (IsPartOf(space, b, a.name)) return distance(a, b.name);
+    return std::min(distance(a, b.name), distance(b, a.name));
+  };
   std::vector<RecordedSeparation> separations;
   for (size_t a = 0; a < effects.size(); ++a)
-    for (size_t b = a + 1; b < effects.size(); ++b) {
-      if (effects[a].IsNothing() || effects[b].IsNothing()) continue;
-      separations.push_back(
-          {effects[a].name, effects[b].name,
-           std::min(distance(effects[a], effects[b].name), distance(effects[b], effects[a].name))});
-    }
+    for (size_t b = a + 1; b < effects.size(); ++b)
+      if (!effects[a].IsNothing() && !effects[b].IsNothing())
+        separations.push_back({effects[a].name, effects[b].name, smaller(effects[a], effects[b])});
   return separations;
 }
 

@@ -45,7 +45,9 @@ std::optional<RecordedPower> PowerToFind(DecisionInput input, const std::string&
 // directions.
 std::vector<RecordedSeparation> Separations(const DecisionInput& input,
                                             const std::vector<std::string>& effects);
-// Separations() of effects at given sizes, which need not be those of the residual of `space`.
+// Separations() of effects at given sizes, which need not be those of the residual of `space`. They
+// may be pairs of effects, named as hypotheses of `space`: a pair can make every prediction of one
+// of its effects, so that λ between the two is the distance of the pair's prediction alone.
 std::vector<RecordedSeparation> SeparationsOf(const HypothesisSpace& space,
                                               const std::vector<FoundEffect>& effects);
 

@@ -3,11 +3,13 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <vector>
 
 #include "calibration/linear_misfit.h"
 #include "core/parallel.h"
+#include "prediction/observed_response.h"
 #include "prediction/replayed_motion.h"
 #include "prediction/smooth_force.h"
 
@@ -26,28 +28,6 @@ constexpr Eigen::Index kMostComponents = 40;
 constexpr double kStrongForce = 10;  // m/s²
 constexpr double kLeastVisible = 0.1;
 
-// Changes of the predicted markers of all frames per unit of each knot's amplitudes, m.
-Eigen::MatrixXd ResponseOf(const RecordingModel& recording, const ReplayedMotion& motion,
-                           const SmoothForce& field, const ReducedResponse& response) {
-  const Eigen::Index markers = recording.PointCount();
-  const std::vector<int>& frames = recording.recording().frames;
-  const auto histories = [&](double time) { return field.HatFunctions(time); };
-  std::vector<double> times;
-  for (const int frame : frames)
-    times.push_back(recording.recording().recording.times[frame] - motion.delay);
-  const Eigen::MatrixXd at_markers = recording.Markers()->rows() * response.basis();
-  Eigen::MatrixXd columns(3 * markers * static_cast<Eigen::Index>(frames.size()),
-                          field.amplitudes.size());
-  response.Respond(histories(field.start), histories, times,
-                   [&](int index, const Eigen::MatrixXd& position, const Eigen::MatrixXd&) {
-                     const Eigen::MatrixXd moved = at_markers * position;
-                     for (Eigen::Index m = 0; m < markers; ++m)
-                       columns.middleRows<3>(3 * (markers * index + m)) =
-                           motion.registration.linear() * moved.middleRows<3>(3 * m);
-                   });
-  return columns;
-}
-
 // The combinations of the columns of one recording, in all rows of the misfit, that could be seen.
 Eigen::MatrixXd VisibleComponents(const Eigen::MatrixXd& columns, const LinearisedMisfit& misfit) {
   const Eigen::MatrixXd white = WhitenedRows(columns, misfit);
@@ -65,7 +45,6 @@ Eigen::MatrixXd ColumnsOf(const CalibrationProblem& problem, const Eigen::Vector
                           const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part) {
   const Eigen::MatrixXd none(misfit.residual.size(), 0);
   const RecordingModel recording = problem.ModelAt(part.recording, values);
-  if (recording.recording().ShowsScans()) return none;
   const ReplayedMotion motion = Replay(recording, problem.NuisanceOf(part.recording, values));
   if (!motion.summary.IsUsable()) return none;
   const std::optional<SmoothForce> field = SmoothForceDuring(recording, motion, kMostKnots);
@@ -74,12 +53,14 @@ Eigen::MatrixXd ColumnsOf(const CalibrationProblem& problem, const Eigen::Vector
   const ReducedResponse response(recording.model(), motion.states, field->Shapes(),
                                  {.scheme = options.step.scheme, .time_step = options.time_step});
   if (!response.IsUsable()) return none;
+  const ForceHistories hat_functions = [&](double time) { return field->HatFunctions(time); };
+  std::vector<int> frames(part.observed.size());
+  std::iota(frames.begin(), frames.end(), 0);
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(misfit.residual.size(), field->amplitudes.size());
   own.middleRows(part.first_row, part.layout.Rows()) =
-      ResponseOf(recording, motion, *field, response) *
+      ObservedResponse(recording, motion, response, hat_functions(field->start), hat_functions,
+                       frames, part.observed) *
       PersistentPriorRoot(field->KnotCount(), kPersistence);
-  for (Eigen::Index row = 0; row < part.layout.Rows(); ++row)
-    if (part.layout.count[static_cast<size_t>(row)] == 0) own.row(part.first_row + row).setZero();
   return VisibleComponents(own, misfit);
 }
 
@@ -87,8 +68,7 @@ Eigen::MatrixXd ColumnsOf(const CalibrationProblem& problem, const Eigen::Vector
 
 Eigen::MatrixXd UnknownForceColumns(const CalibrationProblem& problem,
                                     const Eigen::VectorXd& values, const LinearisedMisfit& misfit) {
-  // Without the parts of load cells: a loop over a single recording leaves the other threads to
-  // the factorisations inside it.
+  // One part for each recording; the load cells have parts of their own, without points.
   std::vector<const LinearisedMisfit::Part*> of_points;
   for (const LinearisedMisfit::Part& part : misfit.parts)
     if (part.IsOfPoints()) of_points.push_back(&part);

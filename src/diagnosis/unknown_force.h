@@ -14,10 +14,9 @@
 
 namespace lacuna {
 
-// One block of columns for each fitted recording of markers, with the rows of `misfit`, m: the
-// response to independent amplitudes whose prior standard deviation is 1 m/s². No columns for
-// recordings of scans, for those with too few frames of motion, and where the reduced model is not
-// usable. Throws Interrupted.
+// One block of columns for each fitted recording, with the rows of `misfit`, m: the response to
+// independent amplitudes whose prior standard deviation is 1 m/s². No columns for recordings with
+// too few frames of motion, and where the reduced model is not usable. Throws Interrupted.
 Eigen::MatrixXd UnknownForceColumns(const CalibrationProblem& problem,
                                     const Eigen::VectorXd& values, const LinearisedMisfit& misfit);
 

@@ -128,7 +128,7 @@ FrameState MakeFrameState(const Recording& recording, int frame_number,
   return state;
 }
 
-void SaveFrameStates(const std::vector<FrameState>& states, const std::filesystem::path& folder) {
+void WriteFrameStates(const std::vector<FrameState>& states, const std::filesystem::path& folder) {
   Eigen::VectorXd times(states.size());
   nlohmann::json notes = nlohmann::json::array();
   for (size_t k = 0; k < states.size(); ++k) {

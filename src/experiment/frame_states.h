@@ -64,7 +64,7 @@ FrameState MakeFrameState(const Recording& recording, int frame_number,
                           const FrameStateOptions& options);
 
 // The files of a run directory: arrays in .npy format, one set per frame, and notes.json.
-void SaveFrameStates(const std::vector<FrameState>& states, const std::filesystem::path& folder);
+void WriteFrameStates(const std::vector<FrameState>& states, const std::filesystem::path& folder);
 std::vector<FrameState> ReadFrameStates(const std::filesystem::path& folder);
 
 // EstimateNoise compares each point with all but one of so many points around it.

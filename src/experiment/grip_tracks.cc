@@ -93,7 +93,8 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
     model->grips.push_back({track->nodes,
                             [track](double time) -> Eigen::Matrix3Xd {
                               if (track->grip.motion == GripMotion::kGiven)
-                                return MotionAt(track->grip, time, track->since) * track->rest;
+                                return ContinuedMotionAt(track->grip, time, track->since) *
+                                       track->rest;
                               return Interpolated(track->places, time);
                             },
                             grip.axes});

@@ -16,9 +16,9 @@ namespace lacuna {
 std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording);
 
 // Fixed regions do not move. A gripped region moves as a rigid body or, where the recording says
-// that it deforms, by an affine map. It follows a given path, its markers or the scanned surface;
-// in the last two cases positions between two frames lie on a smooth curve through those in the
-// frames, and behind the last one on a straight line, so that their velocity does not jump.
+// that it deforms, by an affine map. It follows a given path, its markers or the scanned surface.
+// Positions between two rows of the path, or two frames, lie on a smooth curve through those in the
+// rows or frames, and behind the last one on a straight line, so that their velocity does not jump.
 class GripTracks {
  public:
   // Adds a grip to the model for each fixed and gripped region of the recording. Throws InputError

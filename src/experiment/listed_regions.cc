@@ -33,7 +33,9 @@ NumberedNodes NodesOfSurface(int count, const ReferenceShape& reference,
                              const MeshSettings& settings) {
   if (reference.sheet_thickness > 0) return {.count = count, .is_sheet = true};
   if (!settings.tets.preserve_surface)
-    return {.problem = "`mesh: {preserve_surface: false}` adds nodes between those of the surface"};
+    return {.problem =
+                "they are vertices of the given surface, between which `mesh: {preserve_surface: "
+                "false}` adds others that the list cannot name; set `preserve_surface: true`"};
   return {.count = count};
 }
 

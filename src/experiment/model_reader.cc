@@ -133,6 +133,21 @@ std::vector<std::string> ImplausibleParameters(const EffectList& effects) {
   return warnings;
 }
 
+std::string AuxeticWarning(const EffectList& effects) {
+  for (const auto& effect : effects) {
+    const EffectCard& card = effect->Card();
+    for (size_t k = 0; k < card.parameters.size(); ++k) {
+      const double value = effect->Parameters()[static_cast<Eigen::Index>(k)];
+      if (card.parameters[k].name != "poisson_ratio" || !(value < 0)) continue;
+      return fmt::format(
+          "{}.poisson_ratio is {:g}: an auxetic material, which becomes wider when it is "
+          "stretched; was this meant?",
+          card.type, value);
+    }
+  }
+  return "";
+}
+
 std::string GravityWarning(const RecordedObject& object, const EffectList& effects) {
   if (!object.gravity || GravityOf(effects)) return "";
   return "the object was recorded under gravity, but the model has none; this is valid only if the "

@@ -52,6 +52,10 @@ std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material)
 // One warning for each value far outside the plausible range on its effect's card.
 std::vector<std::string> ImplausibleParameters(const EffectList& effects);
 
+// A warning about the first effect with a negative Poisson's ratio; empty if there is none. Such
+// materials exist, but a wrong sign is more frequent.
+std::string AuxeticWarning(const EffectList& effects);
+
 // A warning where the object was recorded under gravity, of which the model has none; empty
 // otherwise. `gravity` in recording.yaml does not enter the model.
 std::string GravityWarning(const RecordedObject& object, const EffectList& effects);

@@ -108,7 +108,7 @@ ReferenceBody MakeReferenceBody(const ReferenceRequest& request) {
   return body;
 }
 
-void SaveReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder) {
+void WriteReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder) {
   WriteTetMesh(folder / "body.msh", body.mesh);
   std::string notes;
   for (const std::string& note : body.notes) notes += note + "\n";

@@ -35,7 +35,7 @@ struct ReferenceRequest {
 ReferenceBody MakeReferenceBody(const ReferenceRequest& request);
 
 // The files of a run directory: body.msh and notes.txt.
-void SaveReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder);
+void WriteReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder);
 ReferenceBody ReadReferenceBody(const std::filesystem::path& folder);
 
 }  // namespace lacuna

@@ -25,7 +25,7 @@ ReferenceBody RunReferenceBodyStage(RunDirectory* run, const nlohmann::json& con
             fmt::format("{} nodes, {} tetrahedra", body.mesh.NodeCount(), body.mesh.TetCount()));
         return body;
       },
-      SaveReferenceBody, ReadReferenceBody);
+      WriteReferenceBody, ReadReferenceBody);
 }
 
 }  // namespace lacuna

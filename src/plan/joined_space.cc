@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/positive_normal.h"
 #include "core/random_bits.h"
 #include "diagnosis/projected_hypotheses.h"
 
@@ -41,35 +42,38 @@ NormalDistribution FromPrecision(const Eigen::MatrixXd& precision, const Eigen::
   return normal;
 }
 
-// A draw from the standard normal distribution truncated to values of at least `least` (Robert,
-// Simulation of truncated normal variables, Statistics and Computing 5, 1995).
-double NormalAbove(double least, uint64_t bits) {
-  CHECK(std::isfinite(least));
-  const double rate = 0.5 * (least + std::hypot(least, 2.0));
-  for (uint64_t attempt = 0;; ++attempt) {
-    const uint64_t proposal = RandomBits({bits, attempt, 0});
-    const double value = least <= 0 ? Normal(proposal) : least - std::log(Uniform(proposal)) / rate;
-    if (value < least) continue;
-    if (least <= 0 ||
-        Uniform(RandomBits({bits, attempt, 1})) <= std::exp(-0.5 * (value - rate) * (value - rate)))
-      return value;
-  }
+// The distribution given that its component k has this value.
+void Condition(Eigen::Index k, double value, NormalDistribution* normal) {
+  const Eigen::RowVectorXd own = normal->root.row(k);
+  const Eigen::VectorXd gain = normal->root * own.transpose() / own.squaredNorm();
+  normal->mean += gain * (value - normal->mean[k]);
+  normal->root -= gain * own;
 }
 
-// Sets the component k of the distribution to a draw from its marginal distribution truncated at 0,
-// and the others to their distribution given that.
-void DrawPositive(Eigen::Index k, uint64_t bits, NormalDistribution* normal) {
-  const Eigen::RowVectorXd own = normal->root.row(k);
-  const double deviation = own.norm();
-  if (!(deviation > 0)) {  // not determined, or known exactly
-    normal->mean[k] = std::max(normal->mean[k], 0.0);
-    return;
+// Sets these components of the distribution to a draw from their distribution truncated at 0, and
+// the others to their distribution given that.
+void SetToPositive(std::vector<Eigen::Index> components, uint64_t bits,
+                   NormalDistribution* normal) {
+  // Components that are not determined, or known exactly.
+  std::erase_if(components, [&](Eigen::Index k) {
+    const bool is_fixed = normal->root.row(k).isZero(0);
+    if (is_fixed) normal->mean[k] = std::max(normal->mean[k], 0.0);
+    return is_fixed;
+  });
+  if (components.empty()) return;
+  const Eigen::MatrixXd roots = normal->root(components, Eigen::all).transpose();
+  const Eigen::VectorXd drawn =
+      DrawPositive(normal->mean(components), roots.transpose() * roots, bits);
+  for (size_t k = 0; k < components.size(); ++k) {
+    const Eigen::Index at = static_cast<Eigen::Index>(k);
+    const Eigen::Index component = components[k];
+    const bool is_known =  // from those before, but for rounding
+        normal->root.row(component).squaredNorm() <= kUndetermined * roots.col(at).squaredNorm();
+    if (is_known)
+      normal->mean[component] = drawn[at];
+    else
+      Condition(component, drawn[at], normal);
   }
-  const double drawn =
-      normal->mean[k] + deviation * NormalAbove(-normal->mean[k] / deviation, bits);
-  const Eigen::VectorXd gain = normal->root * own.transpose() / own.squaredNorm();
-  normal->mean += gain * (drawn - normal->mean[k]);
-  normal->root -= gain * own;
 }
 
 // The space of the planned recording alone, with the columns of `now`, after the planned
@@ -96,6 +100,29 @@ HypothesisSpace PlannedSpace(const HypothesisSpace& now, const PlannedColumns& p
   return space;
 }
 
+std::vector<WeighedHypothesis> VariantsOf(const HypothesisSpace& space, const std::string& effect) {
+  std::vector<WeighedHypothesis> variants;
+  for (const WeighedHypothesis& hypothesis : space.hypotheses)
+    if (hypothesis.kind == HypothesisKind::kEffect && hypothesis.name == effect)
+      variants.push_back(hypothesis);
+  return variants;
+}
+
+// Each variant of one effect with each of another one.
+std::vector<WeighedHypothesis> Combinations(const std::vector<WeighedHypothesis>& first,
+                                            const std::vector<WeighedHypothesis>& second) {
+  std::vector<WeighedHypothesis> combinations;
+  for (const WeighedHypothesis& a : first) {
+    for (const WeighedHypothesis& b : second) {
+      WeighedHypothesis& both = combinations.emplace_back(a);
+      both.variant += ", " + b.variant;
+      both.columns.insert(both.columns.end(), b.columns.begin(), b.columns.end());
+      both.selection_penalty += b.selection_penalty;
+    }
+  }
+  return combinations;
+}
+
 HypothesisSpace SumOf(const HypothesisSpace& now, const HypothesisSpace& planned) {
   HypothesisSpace joined = now;
   joined.model = LinearGaussianModel::FromProducts(now.model.squares(), now.model.toward(),
@@ -107,15 +134,15 @@ HypothesisSpace SumOf(const HypothesisSpace& now, const HypothesisSpace& planned
 
 }  // namespace
 
-HypothesisSpace SpaceOfRivals(const HypothesisSpace& space,
-                              const std::vector<std::string>& rivals) {
+HypothesisSpace SpaceOfEffects(const HypothesisSpace& space,
+                               const std::vector<std::string>& effects) {
   std::vector<int> columns = space.base;
   std::vector<LinearPrior> priors;
   HypothesisSpace own = space;
   own.hypotheses.clear();
   for (WeighedHypothesis hypothesis : space.hypotheses) {
     if (hypothesis.kind != HypothesisKind::kEffect ||
-        std::count(rivals.begin(), rivals.end(), hypothesis.name) == 0)
+        std::count(effects.begin(), effects.end(), hypothesis.name) == 0)
       continue;
     const std::vector<int> before = std::exchange(hypothesis.columns, {});
     for (const int column : before) {
@@ -129,6 +156,22 @@ HypothesisSpace SpaceOfRivals(const HypothesisSpace& space,
       space.model.squares(), space.model.toward()(columns),
       space.model.products()(columns, columns), std::move(priors));
   for (size_t k = 0; k < own.base.size(); ++k) own.base[k] = static_cast<int>(k);
+  return own;
+}
+
+HypothesisSpace SpaceOfRivals(const HypothesisSpace& effects,
+                              const std::vector<PlannedRival>& rivals) {
+  HypothesisSpace own = effects;
+  own.hypotheses.clear();
+  for (const PlannedRival& rival : rivals) {
+    std::vector<WeighedHypothesis> variants = VariantsOf(effects, rival.effects.front());
+    if (rival.IsPair())
+      variants = Combinations(variants, VariantsOf(effects, rival.effects.back()));
+    for (WeighedHypothesis& variant : variants) {
+      variant.name = rival.effect;
+      own.hypotheses.push_back(std::move(variant));
+    }
+  }
   return own;
 }
 
@@ -151,9 +194,13 @@ Eigen::VectorXd JoinedSpace::DrawToward(const FoundEffect& truth, uint64_t seed,
   }
   // r + A δ is noise, so that the mean of δ solves (AᵀA / v + diag s⁻²) δ = −Aᵀr / v.
   NormalDistribution normal = FromPrecision(precision, -now_.model.toward()(known) / now_.variance);
-  for (size_t k = known.size(); k-- > 0;)  // the amounts of the effect come last
-    if (now_.model.Prior(known[k]).positive)
-      DrawPositive(static_cast<Eigen::Index>(k), RandomBits({seed, 2 * number, k, 1}), &normal);
+  std::vector<Eigen::Index> positive;
+  for (size_t k = 0; k < known.size(); ++k)
+    if (now_.model.Prior(known[k]).positive) positive.push_back(static_cast<Eigen::Index>(k));
+  if (!positive.empty())
+    SetToPositive(positive,
+                  RandomBits({seed, 2 * number, static_cast<uint64_t>(positive.front()), 1}),
+                  &normal);
   Eigen::VectorXd amounts = normal.mean;
   for (Eigen::Index k = 0; k < amounts.size(); ++k)
     amounts +=

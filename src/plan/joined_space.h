@@ -21,24 +21,32 @@
 #include "diagnosis/adequacy.h"
 #include "diagnosis/hypothesis_space.h"
 #include "diagnosis/recording_power.h"
+#include "record/plan_record.h"
 
 namespace lacuna {
 
 // `space` with the variants of these effects as its only hypotheses, after the columns of its base.
-HypothesisSpace SpaceOfRivals(const HypothesisSpace& space, const std::vector<std::string>& rivals);
+HypothesisSpace SpaceOfEffects(const HypothesisSpace& space,
+                               const std::vector<std::string>& effects);
+
+// A SpaceOfEffects() with the rivals as its only hypotheses, which have the names of the rivals:
+// each variant of a single effect, and for a pair each variant of the first effect with each of the
+// second, whose columns are those of both. The columns of the space stay as they are.
+HypothesisSpace SpaceOfRivals(const HypothesisSpace& effects,
+                              const std::vector<PlannedRival>& rivals);
 
 // The columns of a planned recording, whitened with its noise.
 struct PlannedColumns {
   Eigen::MatrixXd parameters;  // rows × parameters of the model
   Eigen::MatrixXd own;         // rows × columns of a base that other recordings do not have
   std::vector<LinearPrior> own_priors;  // mean 0
-  Eigen::MatrixXd variants;             // rows × columns of SpaceOfRivals() behind its base
+  Eigen::MatrixXd variants;             // rows × columns of SpaceOfEffects() behind its base
 };
 
 class JoinedSpace {
  public:
-  // `now`: a SpaceOfRivals(), in whose base the parameters of the model come first. CHECKs the
-  // sizes.
+  // `now`: a SpaceOfEffects() or SpaceOfRivals(), in whose base the parameters of the model come
+  // first. CHECKs the sizes.
   JoinedSpace(const HypothesisSpace& now, const PlannedColumns& planned);
 
   // The base, the columns and the hypotheses of `now`, with the products of both recordings; the
@@ -47,10 +55,9 @@ class JoinedSpace {
 
   // Aᵀr + v A_pᵀC⁻¹r_p for a planned recording that is drawn at random as it would be if the effect
   // were missing, given what the recordings of the run say. The amounts δ of the base and of the
-  // effect are drawn from their posterior, and those of B from their prior. An amount that must be
-  // positive is drawn first, from its marginal posterior truncated at 0, and the others given it;
-  // of several such amounts, that of the effect comes first and each is truncated given those
-  // before, which is exact for one and approximate for several.
+  // effect are drawn from their posterior, and those of B from their prior. The amounts that must
+  // be positive are drawn first, together, from their posterior truncated at 0 (DrawPositive()),
+  // and the others given them.
   //   v A_pᵀC⁻¹r_p = n − S δ,   n ~ N(0, v S).
   Eigen::VectorXd DrawToward(const FoundEffect& truth, uint64_t seed, uint64_t number) const;
 

@@ -43,6 +43,27 @@ struct Influence {
   ProtocolPicture picture;
 };
 
+bool IsOfEffects(const HypothesisProbability& one) {
+  return one.kind == Kind::kEffect || one.kind == Kind::kPair;
+}
+
+// The effect of a hypothesis, or the two of a pair in alphabetical order, without the nuisances
+// beside them, which stand behind.
+std::vector<std::string> EffectsOf(const std::vector<HypothesisProbability>& all,
+                                   const HypothesisProbability& one) {
+  if (one.kind != Kind::kPair) return {one.names.front()};
+  std::vector<std::string> effects = one.names;
+  std::erase_if(effects, [&](const std::string& name) { return IsNuisance(all, name); });
+  effects.resize(2, effects.front());  // a record has the name of an effect at two places once
+  std::sort(effects.begin(), effects.end());
+  return effects;
+}
+
+// PlannedRival::effect
+std::string RivalName(const std::vector<std::string>& effects) {
+  return fmt::format("{}", fmt::join(effects, " with "));
+}
+
 class Planner {
  public:
   Planner(const DiagnosedRun& run, PlanRecord* record);
@@ -55,8 +76,20 @@ class Planner {
   Eigen::VectorXd ValuesOf(const CalibrationProblem& planned, const Protocol& protocol) const;
   // Whether all variants of the effect are candidates with a derivative, not pilots.
   bool HasDerivatives(const std::string& effect) const;
+  // Whether the influence of the rival is that of columns which the diagnosis has kept. The columns
+  // of one effect do not tell what it does at two places at once.
+  bool IsKnown(const PlannedRival& rival) const;
   const CandidateEffect& Find(const WeighedHypothesis& hypothesis) const;
   void Predict(const JoinedSpace& space, PlannedOutcome* outcome) const;
+  // The sizes of the rivals, now and with the planned recording.
+  std::vector<PlannedSize> Sizes(const ProjectedHypotheses& now,
+                                 const ProjectedHypotheses& then) const;
+  // What belongs to a column of effects_.
+  struct Amount {
+    std::string effect;
+    CandidateAmount amount;
+  };
+  Amount AmountAt(int column) const;
   // The evidence of each rival, by its name, to first order.
   std::map<std::string, double> EvidenceIn(const HypothesisSpace& space,
                                            const ProjectedHypotheses& projected,
@@ -67,14 +100,17 @@ class Planner {
   PredictionStudy study_;  // at the fitted values, with the noise of the run
   std::vector<CandidateEffect> candidates_;
   PlanRecord* record_;
-  HypothesisSpace now_;
+  HypothesisSpace effects_;         // the variants of all effects that occur in rivals
+  HypothesisSpace now_;             // the rivals, with the columns of effects_
   std::vector<FoundEffect> found_;  // the rivals, in now_
 };
 
-std::vector<std::string> NamesOf(const std::vector<PlannedRival>& rivals) {
-  std::vector<std::string> names;
-  for (const PlannedRival& rival : rivals) names.push_back(rival.effect);
-  return names;
+// The effects that occur in the rivals, alone or in pairs.
+std::vector<std::string> EffectsIn(const std::vector<PlannedRival>& rivals) {
+  std::vector<std::string> effects;
+  for (const PlannedRival& rival : rivals)
+    effects.insert(effects.end(), rival.effects.begin(), rival.effects.end());
+  return effects;
 }
 
 Planner::Planner(const DiagnosedRun& run, PlanRecord* record)
@@ -89,11 +125,12 @@ Planner::Planner(const DiagnosedRun& run, PlanRecord* record)
                                 study_.candidates,
                                 GrippedNodes(problem_.models().front().model())});
   std::erase_if(record->rivals, [&](const PlannedRival& rival) {
-    const bool is_known = HasDerivatives(rival.effect);
+    const bool is_known = IsKnown(rival);
     if (!is_known) record->not_predicted.push_back(rival.effect);
     return !is_known;
   });
-  now_ = SpaceOfRivals(run.decision.baseline, NamesOf(record->rivals));
+  effects_ = SpaceOfEffects(run.decision.baseline, EffectsIn(record->rivals));
+  now_ = SpaceOfRivals(effects_, record->rivals);
   for (const PlannedRival& rival : record->rivals) found_.push_back(FindEffect(now_, rival.effect));
 }
 
@@ -106,6 +143,20 @@ bool Planner::HasDerivatives(const std::string& effect) const {
                          return candidate.type == effect && candidate.variant == hypothesis.variant;
                        });
   });
+}
+
+bool Planner::IsKnown(const PlannedRival& rival) const {
+  const auto is_weighed = [&](const std::string& effect) {
+    const std::vector<WeighedHypothesis>& all = run_.decision.baseline.hypotheses;
+    return std::any_of(all.begin(), all.end(), [&](const WeighedHypothesis& hypothesis) {
+      return hypothesis.kind == HypothesisKind::kEffect && hypothesis.name == effect;
+    });
+  };
+  if (rival.IsPair() && (rival.effects.front() == rival.effects.back() ||
+                         !std::all_of(rival.effects.begin(), rival.effects.end(), is_weighed)))
+    return false;
+  return std::all_of(rival.effects.begin(), rival.effects.end(),
+                     [&](const std::string& effect) { return HasDerivatives(effect); });
 }
 
 const CandidateEffect& Planner::Find(const WeighedHypothesis& hypothesis) const {
@@ -145,7 +196,8 @@ Influence Planner::InfluenceOf(const Protocol& protocol) const {
   influence.picture = PictureOf(planned, run_.fitted.mesh, hold);
 
   std::vector<CandidateEffect> effects;
-  for (const WeighedHypothesis& hypothesis : now_.hypotheses) effects.push_back(Find(hypothesis));
+  for (const WeighedHypothesis& hypothesis : effects_.hypotheses)
+    effects.push_back(Find(hypothesis));
   const LinearisedWithGrips linearised = LineariseWithGrips(problem, values, DirectionsOf(effects));
   const LinearisedMisfit& misfit = linearised.misfit;
   if (!misfit.usable) {
@@ -185,12 +237,13 @@ void Planner::Predict(const JoinedSpace& space, PlannedOutcome* outcome) const {
   const HypothesisSpace& joined = space.joined();
   const ProjectedHypotheses beside(joined), beside_now(now_);
   const std::map<std::string, double> before = EvidenceIn(now_, beside_now, now_.model.toward());
+  const std::vector<HypothesisProbability>& all = run_.diagnosis.decision.probabilities;
   std::vector<HypothesisProbability> kept;  // nothing, and the rivals, without nuisances
-  for (const HypothesisProbability& one : run_.diagnosis.decision.probabilities) {
-    const bool is_rival = one.kind == Kind::kEffect && before.count(one.names.front()) > 0;
+  for (const HypothesisProbability& one : all) {
+    const bool is_rival = IsOfEffects(one) && before.count(RivalName(EffectsOf(all, one))) > 0;
     if (one.kind != Kind::kNothing && !is_rival) continue;
     kept.push_back(one);
-    if (is_rival) kept.back().names.resize(1);
+    if (is_rival) kept.back().names = EffectsOf(all, one);
   }
   for (size_t k = 0; k < found_.size(); ++k) {
     int right = 0;
@@ -200,12 +253,11 @@ void Planner::Predict(const JoinedSpace& space, PlannedOutcome* outcome) const {
           space.DrawToward(found_[k], run_.decision.seed + k, static_cast<uint64_t>(draw)));
       std::vector<HypothesisProbability> posterior = kept;
       for (HypothesisProbability& one : posterior)
-        if (one.kind == Kind::kEffect)
-          one.evidence += after.at(one.names.front()) - before.at(one.names.front());
+        if (IsOfEffects(one))
+          one.evidence += after.at(RivalName(one.names)) - before.at(RivalName(one.names));
       SetPosterior(&posterior);
       const Naming naming = NameFrom(posterior);
-      if (naming.level == Naming::Level::kCommon &&
-          naming.names == std::vector<std::string>{found_[k].name})
+      if (naming.level == Naming::Level::kCommon && naming.names == record_->rivals[k].effects)
         ++right;
     }
     outcome->named.push_back(static_cast<double>(right) / kDraws);
@@ -215,22 +267,43 @@ void Planner::Predict(const JoinedSpace& space, PlannedOutcome* outcome) const {
   const std::vector<RecordedSeparation> then = SeparationsOf(joined, found_);
   for (size_t k = 0; k < now.size(); ++k)
     outcome->pairs.push_back({now[k].first, now[k].second, now[k].lambda, then[k].lambda});
-  const Eigen::VectorXd projected_now = beside_now.Project(now_.model.toward());
-  const Eigen::VectorXd projected = beside.Project(joined.model.toward());
-  for (const FoundEffect& effect : found_) {
+  outcome->sizes = Sizes(beside_now, beside);
+}
+
+std::vector<PlannedSize> Planner::Sizes(const ProjectedHypotheses& now,
+                                        const ProjectedHypotheses& then) const {
+  const Eigen::VectorXd projected_now = now.Project(now.space().model.toward());
+  const Eigen::VectorXd projected_then = then.Project(then.space().model.toward());
+  std::vector<PlannedSize> sizes;
+  for (size_t k = 0; k < found_.size(); ++k) {
+    const FoundEffect& rival = found_[k];
     for (size_t h = 0; h < now_.hypotheses.size(); ++h) {
-      if (now_.hypotheses[h].columns != effect.columns) continue;
-      const std::vector<CandidateAmount> amounts = AmountsOf(Find(now_.hypotheses[h]));
-      const Eigen::MatrixXd covariance_now = beside_now.AmountsOf(h, projected_now).covariance;
-      const Eigen::MatrixXd covariance = beside.AmountsOf(h, projected).covariance;
-      for (size_t a = 0; a < amounts.size(); ++a) {
+      if (now_.hypotheses[h].columns != rival.columns) continue;
+      const Eigen::MatrixXd covariance_now = now.AmountsOf(h, projected_now).covariance;
+      const Eigen::MatrixXd covariance_then = then.AmountsOf(h, projected_then).covariance;
+      for (size_t a = 0; a < rival.columns.size(); ++a) {
         const Eigen::Index at = static_cast<Eigen::Index>(a);
-        outcome->sizes.push_back({effect.name, amounts[a].name, amounts[a].unit, effect.amounts[at],
-                                  kNormalQuantile * std::sqrt(covariance_now(at, at)),
-                                  kNormalQuantile * std::sqrt(covariance(at, at))});
+        const auto [effect, amount] = AmountAt(rival.columns[a]);
+        const bool is_pair = record_->rivals[k].IsPair();
+        sizes.push_back({rival.name, is_pair ? effect + "." + amount.name : amount.name,
+                         amount.unit, rival.amounts[at],
+                         kNormalQuantile * std::sqrt(covariance_now(at, at)),
+                         kNormalQuantile * std::sqrt(covariance_then(at, at))});
       }
     }
   }
+  return sizes;
+}
+
+Planner::Amount Planner::AmountAt(int column) const {
+  for (const WeighedHypothesis& hypothesis : effects_.hypotheses) {
+    const std::vector<int>& columns = hypothesis.columns;
+    const auto at = std::find(columns.begin(), columns.end(), column);
+    if (at == columns.end()) continue;
+    return {hypothesis.name,
+            AmountsOf(Find(hypothesis)).at(static_cast<size_t>(at - columns.begin()))};
+  }
+  LOG(FATAL) << "no effect has the column " << column;
 }
 
 PlannedOutcome Planner::Play(const Protocol& protocol) const {
@@ -252,7 +325,8 @@ PlannedOutcome Planner::Play(const Protocol& protocol) const {
 
 // How often recordings like those of the run lead to the name of each rival: from the diagnosis,
 // which has simulated that for the most probable effects, and simulated here for the others. A
-// rival that the residual does not show keeps 0: at the size 0 nothing leads to its name.
+// rival that the residual does not show keeps 0: at the size 0 nothing leads to its name. So does a
+// pair, because that simulation decides between single effects.
 void SetNamedNow(const DiagnosedRun& run, std::vector<PlannedRival>* rivals) {
   const auto find = [](const std::vector<RecordedPower>& all, const std::string& effect) {
     return std::find_if(all.begin(), all.end(), [&](const RecordedPower& power) {
@@ -262,7 +336,8 @@ void SetNamedNow(const DiagnosedRun& run, std::vector<PlannedRival>* rivals) {
   std::vector<RecordedPower> known = run.diagnosis.decision.power;
   std::vector<std::string> missing;
   for (const PlannedRival& rival : *rivals)
-    if (find(known, rival.effect) == known.end()) missing.push_back(rival.effect);
+    if (!rival.IsPair() && find(known, rival.effect) == known.end())
+      missing.push_back(rival.effect);
   if (!missing.empty()) {
     const std::vector<RecordedPower> simulated = SimulatePower(run.decision, missing);
     known.insert(known.end(), simulated.begin(), simulated.end());
@@ -272,61 +347,42 @@ void SetNamedNow(const DiagnosedRun& run, std::vector<PlannedRival>* rivals) {
       rival.named_now = power->named;
 }
 
-// The pairs of effects that the diagnosis must keep, "drag with gravity", and their probability.
-struct KeptPairs {
-  std::vector<std::string> names;
-  double probability = 0;
-};
-KeptPairs PairsOf(const DiagnosisRecord& diagnosis) {
-  const std::vector<HypothesisProbability>& all = diagnosis.decision.probabilities;
-  KeptPairs pairs;
-  for (const size_t k : NameFrom(all).kept) {
-    if (all[k].kind != Kind::kPair) continue;
-    std::vector<std::string> names = all[k].names;
-    std::erase_if(names, [&](const std::string& name) { return IsNuisance(all, name); });
-    const std::string text = fmt::format("{}", fmt::join(names, " with "));
-    if (std::count(pairs.names.begin(), pairs.names.end(), text) == 0) pairs.names.push_back(text);
-    pairs.probability += all[k].probability;
-  }
-  return pairs;
-}
-
-// A plan asks which single effect is missing. Throws InputError where the diagnosis says that one
-// is, with or without another one, or where it holds pairs more probable than single effects.
-void RequireSingleEffects(const DiagnosisRecord& diagnosis, const std::string& run) {
-  const KeptPairs pairs = PairsOf(diagnosis);
-  if (pairs.names.empty()) return;
+// Throws InputError where all that the diagnosis keeps contain the same effects, so that it says
+// that these are missing: what else is missing shows in a model that has them.
+void RequireNoCommonEffect(const DiagnosisRecord& diagnosis, const PlanRecord& plan) {
   const Naming naming = NameFrom(diagnosis.decision.probabilities);
-  const bool has_common = naming.level == Naming::Level::kCommon;
-  double single = 0;
-  for (const PlannedRival& rival : RivalsOf(diagnosis)) single += rival.probability;
-  if (!has_common && pairs.probability <= single) return;
-  throw InputError(fmt::format(
-      "the diagnosis of {} keeps pairs of effects ({}), and a recording can only be planned "
-      "between single ones: add {} to the model first, then fit, diagnose and plan again",
-      run, fmt::join(pairs.names, ", "),
-      has_common ? fmt::format("{}, which all that it keeps have in common,",
-                               fmt::join(naming.names, " and "))
-                 : "one of them"));
+  if (plan.rivals.empty() || naming.level != Naming::Level::kCommon) return;
+  std::vector<std::string> names;
+  for (const PlannedRival& rival : plan.rivals) names.push_back(rival.effect);
+  throw InputError(
+      fmt::format("all hypotheses that the diagnosis of {0} keeps ({1}) contain {2}: add {2} to "
+                  "the model first, then fit, diagnose and plan again",
+                  plan.run, fmt::join(names, ", "), fmt::join(naming.names, " and ")));
 }
 
 }  // namespace
 
 std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis) {
   const std::vector<HypothesisProbability>& all = diagnosis.decision.probabilities;
-  std::map<std::string, double> probability;
-  std::vector<std::string> order;
-  for (const size_t k : NameFrom(all).kept) {
-    const HypothesisProbability& one = all[k];
-    if (one.kind != Kind::kEffect) continue;
-    const std::string& name = one.names.front();  // nuisances beside it stand behind
-    if (probability.try_emplace(name, 0.0).second) order.push_back(name);
-    probability[name] += one.probability;
-  }
   std::vector<PlannedRival> rivals;
-  for (const std::string& name : order) {
-    rivals.push_back({name, ShortTitle(diagnosis, name), probability[name]});
+  for (const size_t k : NameFrom(all).kept) {
+    if (!IsOfEffects(all[k])) continue;
+    std::vector<std::string> effects = EffectsOf(all, all[k]);
+    const std::string name = RivalName(effects);
+    const auto known = std::find_if(rivals.begin(), rivals.end(), [&](const PlannedRival& rival) {
+      return rival.effect == name;
+    });
+    if (known != rivals.end()) {
+      known->probability += all[k].probability;
+      continue;
+    }
+    std::string title = ShortTitle(diagnosis, effects.front());
+    if (effects.size() == 2) title += " together with " + ShortTitle(diagnosis, effects.back());
+    rivals.push_back({name, title, all[k].probability, 0, std::move(effects)});
   }
+  std::stable_sort(rivals.begin(), rivals.end(), [](const PlannedRival& a, const PlannedRival& b) {
+    return a.probability > b.probability;
+  });
   return rivals;
 }
 
@@ -339,14 +395,10 @@ PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protoc
   record.rivals = RivalsOf(run.diagnosis);
   std::set<std::vector<std::string>> kept;  // by their effects, where they have any
   for (const size_t k : NameFrom(all).kept) {
-    std::vector<std::string> names = all[k].names;
-    if (all[k].kind == Kind::kNuisance)
-      record.also_left.push_back(names.front());
-    else
-      std::erase_if(names, [&](const std::string& name) { return IsNuisance(all, name); });
-    kept.insert(std::move(names));
+    if (all[k].kind == Kind::kNuisance) record.also_left.push_back(all[k].names.front());
+    kept.insert(IsOfEffects(all[k]) ? EffectsOf(all, all[k]) : all[k].names);
   }
-  if (kept.size() > 1) RequireSingleEffects(run.diagnosis, record.run);
+  if (kept.size() > 1) RequireNoCommonEffect(run.diagnosis, record);
   if (record.rivals.empty() || kept.size() < 2)
     throw InputError(fmt::format(
         "the diagnosis of {} has left no rivals: there is nothing that a further recording would "
@@ -362,7 +414,6 @@ PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protoc
         fmt::format("the influence of {} on another recording cannot be predicted to "
                     "first order",
                     fmt::join(record.not_predicted, ", ")));
-  for (const std::string& pair : PairsOf(run.diagnosis).names) record.not_predicted.push_back(pair);
   SetNamedNow(run, &record.rivals);
   double sum = 0;
   for (const PlannedRival& rival : record.rivals) sum += rival.probability;

@@ -1,7 +1,8 @@
 // Predicts which next recording would decide between the effects that a diagnosis has left.
 //
 // For each protocol one tangent-linear simulation of the fitted model gives the influence of the
-// parameters and of all rivals on the recording that it would make. Joined to the products that the
+// parameters and of all rivals on the recording that it would make; that of a pair of effects is
+// the influence of both, each with a size of its own. Joined to the products that the
 // diagnosis has kept (joined_space.h), it tells how far the rivals would be apart, how well their
 // sizes would be known, and, by simulated recordings, how often the right one would be named. A
 // simulated recording is drawn as it would be if a rival were missing: the size of the rival and
@@ -32,16 +33,16 @@ struct DiagnosedRun {
   const DecisionInput& decision;  // what the diagnosis has decided from
 };
 
-// The single effects among the hypotheses that the diagnosis must keep to reach kStatedProbability,
-// the most probable one first. Their PlannedRival::named_now is not set.
+// The effects and the pairs of effects among the hypotheses that the diagnosis must keep to reach
+// kStatedProbability, the most probable one first, each with the sum over its hypotheses. Their
+// PlannedRival::named_now is not set.
 std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis);
 
 // The outcomes are sorted. A protocol that cannot be played is reported in its message. Throws
 // InputError where the diagnosis has left fewer than two hypotheses that differ in their effects,
-// or no effect among them, and where it keeps pairs of effects that all have an effect in common
-// with everything else that it keeps, or that are more probable than the single effects. Other
-// pairs are named in PlanRecord::not_predicted. Protocols are played side by side; the result does
-// not depend on the number of threads. Throws Interrupted.
+// or no effect among them, and where all that it keeps have an effect in common, alone or in pairs.
+// Rivals that are not weighed are named in PlanRecord::not_predicted. Protocols are played side by
+// side; the result does not depend on the number of threads. Throws Interrupted.
 PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protocols,
                     Progress* progress);
 

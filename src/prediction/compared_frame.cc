@@ -25,7 +25,8 @@ Eigen::VectorXd DerivativeWithoutSimulation(const RecordingModel& model,
     return Eigen::VectorXd::Zero(nodal.position.size());
   Eigen::Matrix3Xd rigid(3, nodal.position.size() / 3);
   for (Eigen::Index a = 0; a < rigid.cols(); ++a)
-    rigid.col(a) = model.ByRegistration(direction, registration, nodal.position.segment<3>(3 * a));
+    rigid.col(a) =
+        model.RegistrationDerivative(direction, registration, nodal.position.segment<3>(3 * a));
   return rigid.reshaped();
 }
 
@@ -69,8 +70,8 @@ void AppendFrame(const RecordingModel& model, const std::vector<MisfitDirection>
     misfit->residual.segment(begin + components * point, components).setZero();
     misfit->jacobian.middleRows(begin + components * point, components).setZero();
   }
-  for (const Eigen::Matrix3d& F : seen.deformation)
-    misfit->deformation.emplace_back(registration.linear() * F);
+  misfit->deformation.insert(misfit->deformation.end(), seen.deformation.begin(),
+                             seen.deformation.end());
   misfit->frames.push_back(frame);
   misfit->observed.push_back(std::move(seen));
 }

@@ -12,19 +12,21 @@ bool IsDelay(const MisfitDirection& direction, Eigen::Index k) {
          (direction.kind == Kind::kCellDelay && direction.reading == static_cast<size_t>(k));
 }
 
-// The derivative of reaction `k` of the state by each direction: 3 × directions, N per unit.
-Eigen::Matrix3Xd ReactionBy(const std::vector<MisfitDirection>& directions, Eigen::Index k,
-                            const PredictedState& state, double start_time) {
-  Eigen::Matrix3Xd by = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(directions.size()));
+// The derivative of reaction `k` of the state with respect to each direction: 3 × directions, N per
+// unit.
+Eigen::Matrix3Xd ReactionDerivative(const std::vector<MisfitDirection>& directions, Eigen::Index k,
+                                    const PredictedState& state, double start_time) {
+  Eigen::Matrix3Xd derivative =
+      Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(directions.size()));
   Eigen::Index of_model = 0;
   for (size_t d = 0; d < directions.size(); ++d) {
-    auto column = by.col(static_cast<Eigen::Index>(d));
+    auto column = derivative.col(static_cast<Eigen::Index>(d));
     if (directions[d].IsSimulated())
       column = state.reaction_jacobian.block<3, 1>(3 * k, of_model++);
     else if (IsDelay(directions[d], k) && state.time > start_time)
       column = -state.reaction_rate.segment<3>(3 * k);
   }
-  return by;
+  return derivative;
 }
 
 }  // namespace
@@ -62,7 +64,8 @@ void AppendReaction(const std::vector<MeasuredReaction>& readings, size_t k, dou
   if (!covers) return;
   residual = reading.directions.transpose() * state.reaction.segment<3>(3 * own) -
              ReadingAt(reading, time);
-  jacobian = reading.directions.transpose() * ReactionBy(directions, own, state, start_time);
+  jacobian =
+      reading.directions.transpose() * ReactionDerivative(directions, own, state, start_time);
 }
 
 void ChooseSign(const MeasuredReaction& reading, const std::vector<double>& times,

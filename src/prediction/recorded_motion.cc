@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/quantity.h"
 #include "experiment/model_reader.h"
@@ -96,6 +98,47 @@ std::string GravityWarning(const PredictedRecording& item, const PredictionStudy
   return warning.empty() ? "" : item.name + ": " + warning;
 }
 
+// An effect of the study is reported once, and not for each recording.
+std::vector<std::string> AuxeticWarnings(const PredictionStudy& study) {
+  std::vector<std::string> warnings = {AuxeticWarning(study.effects)};
+  for (const PredictedRecording& item : study.recordings)
+    if (const std::string warning = AuxeticWarning(item.effects); !warning.empty())
+      warnings.push_back(item.name + ": " + warning);
+  return warnings;
+}
+
+// A part that has left its undeformed place by the first used frame, although that frame is to show
+// the object undeformed.
+std::string EarlyPathWarning(const PredictedRecording& item) {
+  // Less than this share of the range of the path, or than the noise of a logged pose, is no
+  // motion.
+  constexpr double kShare = 0.01, kLeastShift = 1e-4 /* m */, kLeastTurn = 2e-3 /* rad */;
+  const Recording& recording = item.recording;
+  if (recording.reference.source != ReferenceSource::kFirstFrame && !HasTrackedPoints(recording))
+    return "";
+  for (const RecordedGrip& grip : recording.object.grips) {
+    if (grip.motion != GripMotion::kGiven) continue;
+    const double first = recording.times[item.frames.front()];
+    const Eigen::Isometry3d motion = MotionAt(grip, first);
+    const PathRange range = RangeOfPath(grip);
+    Eigen::Vector3d displacement = motion * grip.pivot - grip.pivot;
+    for (int axis = 0; axis < 3; ++axis)
+      if (!grip.axes.Has(axis)) displacement[axis] = 0;
+    const double shift = displacement.norm();
+    const double turn = grip.axes.IsAll() ? Eigen::AngleAxisd(motion.linear()).angle() : 0;
+    if (shift <= std::max(kShare * range.shift, kLeastShift) &&
+        turn <= std::max(kShare * range.turn, kLeastTurn))
+      continue;
+    return fmt::format(
+        "{}: the first frame that is used, at {}, is to show the object undeformed, but \"{}\" has "
+        "moved by {:.3g} mm and {:.3g}° by then: in a prediction its motion counts from the first "
+        "row of its path, {}; let the file begin with a row at the time of that frame",
+        item.name, TimeText(first), grip.region.name, 1e3 * shift, turn * 180 / std::numbers::pi,
+        grip.file.string());
+  }
+  return "";
+}
+
 std::string UnseenWarning(const PredictedRecording& item) {
   if (item.ShowsScans()) return "";
   const auto is_unseen = [&](int frame) {
@@ -139,11 +182,13 @@ std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
     add(UnseenWarning(item));
     add(DoubtOfPlaces(study, item));
     add(DoubtOfIncrements(item));
+    add(EarlyPathWarning(item));
     add(FitUntilWarning(item));
     add(SlownessWarning(item, study));
     add(GravityWarning(item, study));
   }
   add(ScanSettingsWarning(study));
+  for (const std::string& warning : AuxeticWarnings(study)) add(warning);
   add(RestWarning(study));
   return warnings;
 }

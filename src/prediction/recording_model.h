@@ -44,6 +44,10 @@ class RecordingModel {
                  const SurfacePatches& patches);
 
   const PredictedRecording& recording() const { return recording_; }
+  // What was measured.
+  const Recording& measured() const { return recording_.recording; }
+  // The time, s, of a frame, by its number in the recording.
+  double FrameTime(int frame) const { return measured().times[static_cast<size_t>(frame)]; }
   const Model& model() const { return model_; }
   const Observer& observer() const { return *observer_; }
   int PointCount() const { return observer_->PointCount(); }
@@ -91,10 +95,11 @@ class RecordingModel {
   Eigen::Isometry3d Registration(const Eigen::VectorXd& nuisance) const;
   // The placement of a grip, by its index in Model::grips.
   GripPlacement PlacementOf(size_t grip, const Eigen::VectorXd& nuisance) const;
-  // The derivative of a place in the recording's coordinates by a translation or a small rotation.
-  Eigen::Vector3d ByRegistration(const MisfitDirection& direction,
-                                 const Eigen::Isometry3d& registration,
-                                 const Eigen::Vector3d& place) const;
+  // The derivative of a place in the recording's coordinates with respect to a translation or a
+  // small rotation of the registration.
+  Eigen::Vector3d RegistrationDerivative(const MisfitDirection& direction,
+                                         const Eigen::Isometry3d& registration,
+                                         const Eigen::Vector3d& place) const;
   // The frames of a scan in which too few points have a correspondence: fewer than `least` times
   // the share in the best frame, or in the first frame with the undeformed surface. Where the first
   // frame does not show the undeformed surface, because the object is deformed there, all points
@@ -111,7 +116,7 @@ class RecordingModel {
                    MisfitDirection direction);
   void RequireThatScansShowTheObject();
   // What a simulated direction perturbs with these nuisance parameters.
-  Perturbation PerturbationBy(const MisfitDirection& direction,
+  Perturbation PerturbationOf(const MisfitDirection& direction,
                               const Eigen::VectorXd& nuisance) const;
   Eigen::Vector3d Middle() const { return observer_->Places().rowwise().mean(); }
 

@@ -97,7 +97,7 @@ GripPlacement RecordingModel::PlacementOf(size_t grip, const Eigen::VectorXd& nu
   return placement;
 }
 
-Perturbation RecordingModel::PerturbationBy(const MisfitDirection& direction,
+Perturbation RecordingModel::PerturbationOf(const MisfitDirection& direction,
                                             const Eigen::VectorXd& nuisance) const {
   if (!direction.IsOfGrip()) return direction.perturbation;
   Perturbation perturbation;
@@ -172,9 +172,9 @@ Eigen::Isometry3d RecordingModel::Registration(const Eigen::VectorXd& nuisance) 
   return registration;
 }
 
-Eigen::Vector3d RecordingModel::ByRegistration(const MisfitDirection& direction,
-                                               const Eigen::Isometry3d& registration,
-                                               const Eigen::Vector3d& place) const {
+Eigen::Vector3d RecordingModel::RegistrationDerivative(const MisfitDirection& direction,
+                                                       const Eigen::Isometry3d& registration,
+                                                       const Eigen::Vector3d& place) const {
   const Eigen::Vector3d axis = Eigen::Vector3d::Unit(direction.axis);
   if (direction.kind == Kind::kShift) return axis;
   return axis.cross(place - registration * Middle());

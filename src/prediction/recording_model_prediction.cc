@@ -62,7 +62,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   const std::vector<ReadingTime> visits = VisitedTimes(*this, times, nuisance);
   std::vector<Perturbation> perturbations;
   for (const MisfitDirection& direction : directions)
-    if (direction.IsSimulated()) perturbations.push_back(PerturbationBy(direction, nuisance));
+    if (direction.IsSimulated()) perturbations.push_back(PerturbationOf(direction, nuisance));
   const Eigen::Isometry3d registration = Registration(nuisance);
   const bool is_registered = recording_.shift_deviation > 0 || recording_.turn_deviation > 0;
 

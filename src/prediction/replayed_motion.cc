@@ -50,9 +50,6 @@ void StorePoints(const RecordingModel& recording, const EmbeddedPoints& points,
                  const PredictedState& state, int frame, ReplayedMotion* motion) {
   motion->predicted.col(frame) =
       (motion->registration * points.PlacesAt(state.position)).reshaped();
-  if (recording.Markers() != nullptr)
-    for (const Eigen::Matrix3d& deformation : recording.Markers()->DeformationAt(state.position))
-      motion->deformation.emplace_back(motion->registration.linear() * deformation);
   const Body& body = *recording.model().body;
   for (Eigen::Index m = 0; m < recording.PointCount(); ++m) {
     const ElementStrain strain =

@@ -22,11 +22,9 @@ struct ReplayedMotion {
   PredictionSummary summary;
   double delay = 0;  // s, delay of the recording's clock; model time is recorded time − delay
   Eigen::VectorXd nuisance;  // values of RecordingModel::nuisances()
-  // The transform from the model's to the recording's coordinates. Places and F are in the latter.
+  // The transform from the model's to the recording's coordinates. Places are in the latter.
   Eigen::Isometry3d registration = Eigen::Isometry3d::Identity();
   Eigen::MatrixXd predicted;  // 3m, m, places of the points
-  // m × frames: deformation gradient F at each marker; empty for scans.
-  std::vector<Eigen::Matrix3d> deformation;
   // The misfit of the frames, without reactions. The correspondences of scanned points are found
   // anew along this motion. The Jacobian has a column for each of RecordingModel::nuisances(); it
   // is 0 for one whose derivative must be simulated (MisfitDirection::IsSimulated).

@@ -80,7 +80,7 @@ class SettingDifference final : public CloneableEffect<SettingDifference> {
 
 }  // namespace
 
-Perturbation ByParameter(const std::shared_ptr<const Effect>& effect, int parameter) {
+Perturbation ParameterPerturbation(const std::shared_ptr<const Effect>& effect, int parameter) {
   if (!effect->Card().parameters[static_cast<size_t>(parameter)].setting)
     return {.effect = effect, .parameter = parameter};
   return {.effect = std::make_shared<const SettingDifference>(effect, parameter),

@@ -1,9 +1,9 @@
-// The derivative of a motion by a parameter of an effect, also where it is a setting.
+// The derivative of a motion with respect to a parameter of an effect, also where it is a setting.
 //
-// A setting is never fitted, and effects do not differentiate their force f by it (fem/effect.h).
-// But a setting that follows the material, such as the Poisson's ratio of a viscoelastic branch,
-// changes with a parameter that is fitted (ModelParameters in prediction/prediction_study.h). Its
-// derivative is the central difference
+// A setting is never fitted, and effects do not differentiate their force f with respect to it
+// (fem/effect.h). But a setting that follows the material, such as the Poisson's ratio of a
+// viscoelastic branch, changes with a parameter that is fitted (ModelParameters in
+// prediction/prediction_study.h). Its derivative is the central difference
 //   ∂f/∂p ≈ (f(x; z⁺, p + h) − f(x; z⁻, p − h))/(2h),
 // where the internal variables z± follow the same motion x with p ± h, so that ∂f/∂z dz/dp is part
 // of it.
@@ -16,9 +16,9 @@
 
 namespace lacuna {
 
-// The perturbation by the parameter of this number of an effect of the model. The value of a
+// The perturbation of the parameter of this number of an effect of the model. The value of a
 // setting must lie inside its bounds (CHECKed).
-Perturbation ByParameter(const std::shared_ptr<const Effect>& effect, int parameter);
+Perturbation ParameterPerturbation(const std::shared_ptr<const Effect>& effect, int parameter);
 
 }  // namespace lacuna
 

@@ -57,7 +57,8 @@ RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress
   const auto states = RunStage<std::vector<FrameState>>(
       &run,
       {"surfaces", kStatesVersion, part({"frames", "filter", "surface", "validation"}), inputs},
-      progress, [&] { return LoadFrameStates(study, progress); }, SaveFrameStates, ReadFrameStates);
+      progress, [&] { return LoadFrameStates(study, progress); }, WriteFrameStates,
+      ReadFrameStates);
 
   std::map<std::string, std::string> behind{{"surfaces", run.ResultHash("surfaces")}};
   for (const auto& [name, hash] : inputs) behind[name] = hash;

@@ -297,6 +297,8 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
   CheckPathsAndForces(config, &study);
   for (const std::string& warning : ImplausibleParameters(study.effects))
     study.recording.warnings.push_back(warning);
+  if (const std::string warning = AuxeticWarning(study.effects); !warning.empty())
+    study.recording.warnings.push_back(warning);
   if (const std::string warning = GravityWarning(study.recording.object, study.effects);
       !warning.empty())
     study.recording.warnings.push_back(warning);

@@ -43,6 +43,15 @@ struct ModelErrors {
 // deviation of each coordinate; in the unit of `sigma`.
 inline double RmsOfMarkerNoise(double sigma) { return std::sqrt(3.0) * sigma; }
 
+// Whether all points have the noise of a typical one, which alone would give the rms length
+// `noise_rms`: `rms_over_sigma`, the rms error in units of each point's own noise, is then
+// `rms`/`noise_rms`. Points with weights, and patches that are means of different numbers of
+// scanned points, have noise of their own.
+inline bool HaveEqualNoise(double rms, double rms_over_sigma, double noise_rms) {
+  constexpr double kOtherNoise = 0.02;  // relative; larger: more differences count as rounding
+  return std::abs(rms_over_sigma * noise_rms - rms) <= kOtherNoise * rms;
+}
+
 // An effect, or a nuisance, that a diagnosis could not try with these recordings or with one of
 // them.
 struct UntriedEffect {

@@ -17,11 +17,17 @@ namespace lacuna {
 // With this λ two effects are told apart in about four recordings of five.
 inline constexpr double kSeparableLambda = 12;
 
-// An effect that the diagnosis could not rule out.
+// An effect, or a pair of effects at once, that the diagnosis could not rule out.
 struct PlannedRival {
-  std::string effect, title;  // "mass_damping"; within a sentence
+  std::string effect, title;  // "mass_damping", "drag with gravity"; within a sentence
   double probability = 0;     // of the diagnosis, among the rivals; they sum to 1
-  double named_now = 0;       // how often recordings like those of the run lead to its name alone
+  // How often recordings like those of the run lead to its name alone; 0 for a pair, which that
+  // simulation does not weigh.
+  double named_now = 0;
+  // The effect, or the two of a pair in alphabetical order. Not in files.
+  std::vector<std::string> effects = {};
+
+  bool IsPair() const { return effects.size() == 2; }
 };
 
 struct PlannedPair {
@@ -32,7 +38,9 @@ struct PlannedPair {
 // One of the parameters that define the size of a rival, SI, with the half-width of its 95 %
 // interval, which its prior limits where the recordings do not determine it.
 struct PlannedSize {
-  std::string effect, parameter, unit;
+  std::string effect;     // PlannedRival::effect
+  std::string parameter;  // "coefficient"; of a pair with its effect: "drag.coefficient"
+  std::string unit;
   double value = 0, half_width_now = 0, half_width_then = 0;
 };
 
@@ -73,8 +81,9 @@ struct PlanRecord {
   std::string verdict;                 // of the diagnosis, with its names
   std::vector<PlannedRival> rivals;    // the most probable one first
   std::vector<std::string> also_left;  // nuisances that the diagnosis has not ruled out either
-  std::vector<std::string>
-      not_predicted;  // rivals whose influence on a planned recording is unknown, and pairs
+  // Rivals that are not weighed: beyond kMostPlannedRivals, or with an unknown influence on a
+  // planned recording.
+  std::vector<std::string> not_predicted;
   std::vector<PlannedOutcome> outcomes;  // the best first; those that cannot be played last
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/text_layout.h"
+#include "record/model_errors.h"
 #include "report/error_trend_text.h"
 #include "report/quantity_text.h"
 #include "report/reaction_text.h"
@@ -22,9 +23,6 @@ constexpr double kFarFromFloor = 2;        // ratio of the assumed noise to the 
 // The object drifts while it rests where the slope is this many times that which noise alone gives:
 // below, a few frames at rest would show a drift; above, slow drift of long rests goes unmentioned.
 constexpr double kClearDrift = 3;
-// The points have different noise where the rms error in units of each point's own noise differs
-// by this much, relatively, from the rms error over the noise of a typical point.
-constexpr double kOtherNoise = 0.02;
 // An error at the measured places is reported where it is so many times that at the fitted places.
 constexpr double kHiddenByPlaces = 1.1;
 
@@ -33,9 +31,7 @@ bool IsWhite(double p_value) { return p_value >= kSignificant; }
 // The multiple of the noise that the fit assumed.
 std::string MultipleText(const ComparedRecording& recording, const ErrorSize& error) {
   const double noise_rms = recording.RmsOfNoise(recording.noise);
-  const bool have_equal_noise =
-      std::abs(error.rms_over_sigma * noise_rms - error.rms) <= kOtherNoise * error.rms;
-  if (have_equal_noise)
+  if (HaveEqualNoise(error.rms, error.rms_over_sigma, noise_rms))
     return fmt::format(
         "{:.1f} times the {} that noise alone would give (σ = {} {}, as assumed in the fit)",
         error.rms_over_sigma, Millimetres(noise_rms), Millimetres(recording.noise),

@@ -17,18 +17,25 @@ namespace lacuna {
 
 struct LedgerBar {
   std::string label;  // ModelLabel: "with viscoelastic branch"
-  double error = 0;   // m, rms
+  double error = 0;   // rms, in LedgerPicture::unit
 };
 
 struct LedgerPicture {
+  enum class Unit {
+    kMetres,
+    kNoise,  // the noise of each point: noise alone gives an error of 1
+  };
   std::string title;                                 // names the error that the bars show
   std::vector<LedgerBar> models;                     // from top to bottom
-  double noise = 0;                                  // m, rms; 0: draw no line
+  double noise = 0;                                  // rms, in `unit`; 0: draw no line
   std::string noise_label = "noise of the markers";  // beside the line
+  Unit unit = Unit::kMetres;
 };
 
 // The held-out error of every model that could be fitted, or the error of the fitted frames where
-// nothing was held out. At least one model is needed (CHECK).
+// nothing was held out. Where points have noise of their own, as patches of scans do, no length
+// holds for the noise of all of them, and each residual is divided by the noise of its point. At
+// least one model is needed (CHECK).
 LedgerPicture PictureOf(const Ledger& ledger);
 
 // Writes a PNG that is 1800 pixels wide, with letters that are still readable at half that width;

@@ -27,8 +27,11 @@ std::string Question(const PlanRecord& plan) {
       rivals.size() == 1
           ? fmt::format("Whether {} is missing, or something else, is open.", plan.rivals[0].title)
           : fmt::format("The diagnosis cannot tell apart {}.", EnumerationText(rivals));
-  text += fmt::format(" Recordings like these lead to the right name in {} of such cases.",
-                      PercentText(now));
+  const bool has_pair = std::any_of(plan.rivals.begin(), plan.rivals.end(),
+                                    [](const PlannedRival& rival) { return rival.IsPair(); });
+  text += fmt::format(" Recordings like these lead to the right name in {} of such cases{}.",
+                      PercentText(now),
+                      has_pair ? ", where two effects at once count as not named" : "");
   if (!plan.also_left.empty())
     text += fmt::format(
         " Errors of the measurement or of the discretisation could explain it, too "
@@ -111,12 +114,20 @@ std::string Table(const PlanRecord& plan) {
   return table;
 }
 
-std::string Sizes(const PlannedOutcome& best) {
+std::string Sizes(const PlanRecord& plan) {
+  const auto is_pair = [&](const std::string& name) {
+    return std::any_of(plan.rivals.begin(), plan.rivals.end(), [&](const PlannedRival& rival) {
+      return rival.effect == name && rival.IsPair();
+    });
+  };
   std::string lines;
-  for (const PlannedSize& size : best.sizes)
-    lines +=
-        fmt::format("  {}.{}: {:.3g} ± {:.2g} {}, now ± {:.2g} {}\n", size.effect, size.parameter,
-                    size.value, size.half_width_then, size.unit, size.half_width_now, size.unit);
+  for (const PlannedSize& size : plan.outcomes.front().sizes) {
+    const std::string what = is_pair(size.effect)
+                                 ? fmt::format("{} ({})", size.parameter, size.effect)
+                                 : fmt::format("{}.{}", size.effect, size.parameter);
+    lines += fmt::format("  {}: {:.3g} ± {:.2g} {}, now ± {:.2g} {}\n", what, size.value,
+                         size.half_width_then, size.unit, size.half_width_now, size.unit);
+  }
   return lines;
 }
 
@@ -151,7 +162,7 @@ std::string PlanReport(const PlanRecord& plan) {
   if (!plan.outcomes.front().sizes.empty())
     text +=
         "\nExpected 95 % intervals with the best recording, if the effect is the missing one:\n" +
-        Sizes(plan.outcomes.front());
+        Sizes(plan);
   return text + WhyNot(plan);
 }
 

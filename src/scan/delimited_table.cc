@@ -88,6 +88,14 @@ bool IsDate(std::string_view text) {
          (count(':') > 0 || count('-') > 1 || count('/') > 1 || count('.') > 1);
 }
 
+// Whether a text is neither a number nor the beginning of one, as dates and numbers with separators
+// of thousands are.
+bool IsWord(std::string_view text) {
+  const size_t at = text.find_first_not_of("+-., ");
+  return !ParseDecimal(text) &&
+         (at == std::string_view::npos || !std::isdigit(static_cast<unsigned char>(text[at])));
+}
+
 // Notes a header in which most entries are numbers with decimals: its line may be a row of data of
 // which one entry cannot be read. Whole numbers are common names of channels.
 void DoubtHeader(DelimitedTable* table, int line) {
@@ -225,6 +233,7 @@ class TableReader {
 
   // Takes a row of numbers, and the empty rows above it.
   void TakeRow(const std::vector<std::string_view>& fields) {
+    RefuseSummary(fields);
     for (const EmptyRow& empty : empty_rows_) {
       CheckWidth(empty.line, empty.width);
       entries_.insert(entries_.end(), width_, std::numeric_limits<double>::quiet_NaN());
@@ -245,6 +254,27 @@ class TableReader {
       entries_.push_back(*value);
     }
     table_.line.push_back(line_number_);
+  }
+
+  // Refuses a line that begins with a word, such as "Mean,1.2,3.4", below the last row of numbers.
+  void RefuseSummary(const std::vector<std::string_view>& fields) const {
+    const auto first = std::find_if(fields.begin(), fields.end(),
+                                    [](std::string_view field) { return !field.empty(); });
+    if (table_.line.empty() || !IsWord(*first) || RowsFollow()) return;
+    throw InputError(
+        {table_.file.string(), line_number_, 1},
+        fmt::format("is not a row of numbers (got \"{}\"); remove summary lines at the "
+                    "end of the table, or put a # in front of them",
+                    *first));
+  }
+
+  // Whether a row of numbers follows the current line.
+  bool RowsFollow() const {
+    for (const std::string_view line : SplitLines(Rest())) {
+      const std::vector<std::string_view> fields = SplitFields(line, delimiter_);
+      if (fields.size() == width_ && !AreEmpty(fields) && AreNumbers(fields)) return true;
+    }
+    return false;
   }
 
   void CheckWidth(int line, size_t entries) const {

@@ -53,7 +53,8 @@ struct DelimitedTable {
 };
 
 // Throws InputError at file:line:column when the file is absent or empty, an entry is not a number
-// or may have a separator of thousands, or a row does not have as many entries as the first.
+// or may have a separator of thousands, a row does not have as many entries as the first, or lines
+// of a summary follow the last row.
 DelimitedTable ReadDelimitedTable(const std::filesystem::path& file);
 
 // The column called `name` or, when the header has no such name, the column with the number `name`

@@ -85,6 +85,42 @@ void ReadPath(const Config& path, const DataLocation& data, const FrameData& fra
   grip->turns_in_radians = radian == 1;
 }
 
+// The displacement (m) and the rotation vector (rad) of a given path at one time.
+struct PathPose {
+  Eigen::Vector3d displacement;
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();
+};
+
+PathPose PoseAt(const RecordedGrip& grip, double time) {
+  PathPose pose{InterpolateSmoothly(grip.times, grip.displacements, time)};
+  if (grip.rotations.cols() > 0)
+    pose.rotation = InterpolateSmoothly(grip.times, grip.rotations, time);
+  return pose;
+}
+
+// The pose at a time t behind the last row, at time T: the path before T, reflected through its
+// last point, x(t) = 2 x(T) − x(2T − t). The velocity does not jump there, and the errors of single
+// rows are not magnified, as they would be along the tangent.
+PathPose PoseBehindTheLastRow(const RecordedGrip& grip, double time) {
+  const Eigen::Index last = grip.times.size() - 1;
+  const PathPose before = PoseAt(grip, 2 * grip.times[last] - time);
+  PathPose pose{2 * grip.displacements.col(last) - before.displacement};
+  if (grip.rotations.cols() > 0) pose.rotation = 2 * grip.rotations.col(last) - before.rotation;
+  return pose;
+}
+
+// The rigid motion from one pose of the grip to another.
+Eigen::Isometry3d MotionBetween(const RecordedGrip& grip, const PathPose& from,
+                                const PathPose& to) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.translate(to.displacement - from.displacement);
+  if (grip.rotations.cols() == 0) return motion;
+  motion.translate(grip.pivot);
+  motion.rotate(RotationBy(to.rotation) * RotationBy(from.rotation).transpose());
+  motion.translate(-grip.pivot);
+  return motion;
+}
+
 }  // namespace
 
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time) {
@@ -92,19 +128,13 @@ Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time) {
 }
 
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time, double since) {
-  const auto displacement = [&grip](double at) {
-    return InterpolateSmoothly(grip.times, grip.displacements, at);
-  };
-  const auto rotation = [&grip](double at) {
-    return RotationBy(InterpolateSmoothly(grip.times, grip.rotations, at));
-  };
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  motion.translate(displacement(time) - displacement(since));
-  if (grip.rotations.cols() == 0) return motion;
-  motion.translate(grip.pivot);
-  motion.rotate(rotation(time) * rotation(since).transpose());
-  motion.translate(-grip.pivot);
-  return motion;
+  return MotionBetween(grip, PoseAt(grip, since), PoseAt(grip, time));
+}
+
+Eigen::Isometry3d ContinuedMotionAt(const RecordedGrip& grip, double time, double since) {
+  const Eigen::Index rows = grip.times.size();
+  if (rows < 2 || time <= grip.times[rows - 1]) return MotionAt(grip, time, since);
+  return MotionBetween(grip, PoseAt(grip, since), PoseBehindTheLastRow(grip, time));
 }
 
 PathRange RangeOfPath(const RecordedGrip& grip) {

@@ -53,6 +53,11 @@ struct RecordedGrip {
 // row of its path.
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time);
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time, double since);
+// MotionAt(), but behind the last row the grip goes on as it has come: its displacement and its
+// rotation vector are the path before, reflected through its last point. MotionAt() leaves it at
+// rest. A model needs this: the last time step of a prediction ends behind the last frame, in which
+// the grip need not have stopped, and a jump of its velocity would be a shock.
+Eigen::Isometry3d ContinuedMotionAt(const RecordedGrip& grip, double time, double since);
 
 // The largest distance, m, from the first row, and the largest angle, rad, turned since; 0 unless
 // the path is given.

@@ -110,30 +110,52 @@ std::vector<InfoLine> DescribeObject(const Recording& recording) {
   return lines;
 }
 
-// A sentence if a series at `times` (s) does not cover the frames; empty if it does.
-std::string DescribeUncovered(const std::filesystem::path& file, const Eigen::VectorXd& times,
-                              const Recording& recording, int first, int last) {
+// What a given path or a measured force needs to be compared with the times of frames.
+struct TimedSeries {
+  const std::filesystem::path& file;
+  const Eigen::VectorXd& times;  // s
+  std::string field;             // of recording.yaml, which names the file
+};
+
+// A sentence if a series does not cover the frames; empty if it does.
+std::string DescribeUncovered(const TimedSeries& series, const Recording& recording, int first,
+                              int last) {
   const double begin = recording.times[first], end = recording.times[last];
-  if (CoversTimes(times, begin, end, TimeMargin(recording.times))) return "";
-  return fmt::format("{} covers {} to {}, the frames {} to {}", file.string(), TimeText(times[0]),
-                     TimeText(times[times.size() - 1]), TimeText(begin), TimeText(end));
+  const double margin = TimeMargin(recording.times);
+  const double series_begin = series.times[0], series_end = series.times[series.times.size() - 1];
+  std::vector<std::string> gaps;
+  if (!CoversTimes(series.times, begin, begin, margin) && begin < series_begin)
+    gaps.push_back(
+        fmt::format("begins {} after the first of them", DurationText(series_begin - begin)));
+  if (!CoversTimes(series.times, end, end, margin) && end > series_end)
+    gaps.push_back(fmt::format("ends {} before the last of them", DurationText(end - series_end)));
+  if (gaps.empty()) return "";
+  return fmt::format(
+      "{} covers {} to {}, the frames {} to {}: it {}; extend this file, which {} names "
+      "in {}, or use fewer frames",
+      series.file.string(), TimeText(series_begin), TimeText(series_end), TimeText(begin),
+      TimeText(end), fmt::join(gaps, ", and "), series.field, recording.file.string());
 }
 
 }  // namespace
 
 std::string DescribeUncoveredPath(const Recording& recording, int first, int last) {
+  const std::vector<RecordedGrip>& grips = recording.object.grips;
   std::string text;
-  for (const RecordedGrip& grip : recording.object.grips)
-    if (grip.motion == GripMotion::kGiven && text.empty())
-      text = DescribeUncovered(grip.file, grip.times, recording, first, last);
+  for (size_t k = 0; k < grips.size() && text.empty(); ++k)
+    if (grips[k].motion == GripMotion::kGiven)
+      text = DescribeUncovered({grips[k].file, grips[k].times, fmt::format("gripped[{}].path", k)},
+                               recording, first, last);
   return text;
 }
 
 std::string DescribeUncoveredForce(const Recording& recording, int first, int last) {
+  const std::vector<MeasuredForce>& forces = recording.object.forces;
   std::string text;
-  for (const MeasuredForce& force : recording.object.forces)
-    if (!force.file.empty() && text.empty())  // not a constant
-      text = DescribeUncovered(force.file, force.times, recording, first, last);
+  for (size_t k = 0; k < forces.size() && text.empty(); ++k)
+    if (!forces[k].file.empty())  // not a constant
+      text = DescribeUncovered({forces[k].file, forces[k].times, fmt::format("forces[{}]", k)},
+                               recording, first, last);
   return text;
 }
 

@@ -65,7 +65,8 @@ Recording LoadRecording(const Config& config, const std::string& key);
 void AddFileOf(const Region& region, Recording* recording);
 
 // A sentence about the first given path of a grip, or file of a force, that does not cover the time
-// from frame `first` to frame `last` (time_span.h); empty if there is none.
+// from frame `first` to frame `last` (time_span.h): by how much, and which field of recording.yaml
+// names the file. Empty if there is none.
 std::string DescribeUncoveredPath(const Recording& recording, int first, int last);
 std::string DescribeUncoveredForce(const Recording& recording, int first, int last);
 

@@ -196,9 +196,11 @@ TrueRecording RecordTruth(const TrialCase& trial, const Protocol& protocol,
                           int number, bool rough) {
   const RecordedGrip& clamp = planned.item.recording.object.grips.at(0);
   const std::vector<double>& times = planned.item.recording.times;
-  const TrialProcedure procedure{times, [&](double time) { return MotionAt(clamp, time); },
-                                 PlannedHoldForce(protocol, hold_force), protocol.weight,
-                                 CellTimes(trial, number, times)};
+  const auto motion_of_clamp = [&](double time) {
+    return ContinuedMotionAt(clamp, time, clamp.times[0]);
+  };
+  const TrialProcedure procedure{times, motion_of_clamp, PlannedHoldForce(protocol, hold_force),
+                                 protocol.weight, CellTimes(trial, number, times)};
   const TrueMotion motion = SimulateTruth(trial, procedure, rough);
   TrueRecording recorded{planned.item.recording.markers, {}};
   Markers& markers = recorded.markers;

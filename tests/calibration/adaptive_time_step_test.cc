@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "support/held_bar.h"
@@ -66,6 +67,24 @@ TEST_F(AdaptiveTimeStepOfABar, DoesNotResolveWhatTheModelLacksAnyway) {
   EXPECT_LT(fit.step_error, 0.05 * fit.calibration.rms);
 }
 
+// The noise hides the error of the first step, which therefore stays. Each of the two estimates of
+// that error takes one prediction with the step and one with half of it, which counts twice; one
+// more prediction judges the start values.
+TEST_F(AdaptiveTimeStepOfABar, CountsWhatJudgesTheStep) {
+  PredictionStudy study = ReadBarStudy(
+      folder_.Path(), {{"motion: {time_step: 1.5 ms}\n", ""}, {"noise: 0.05 mm", "noise: 5 mm"}});
+  const double step = study.time_step;
+  FitBudget budget(step);
+  SilentProgress progress;
+  const AdaptedFit fit =
+      FitWithAdaptiveTimeStep(BarMesh({3, 1, 1}, 1), &study, &progress, nullptr, &budget);
+  ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
+  ASSERT_EQ(study.time_step, step);
+  EXPECT_GT(fit.step_error, 0);
+  EXPECT_EQ(budget.PredictionsLeft(step),
+            FitBudget::kPredictions - fit.calibration.predictions - 2 * (1 + 2) - 1);
+}
+
 // A force whose direction changes with each halving of the step: no step is short enough.
 class StepDependentForce final : public TestEffect<StepDependentForce> {
  public:
@@ -81,15 +100,34 @@ class StepDependentForce final : public TestEffect<StepDependentForce> {
   }
 };
 
-TEST_F(AdaptiveTimeStepOfABar, SaysWhereNoStepIsShortEnough) {
+PredictionStudy WithoutAStepThatIsShortEnough(const std::filesystem::path& folder) {
   PredictionStudy study = ReadBarStudy(
-      folder_.Path(), {{"motion: {time_step: 1.5 ms}\n", ""},
-                       {"fit: {parameters: [{name: young_modulus}, {name: mass_damping.alpha}]}",
-                        "fit: {parameters: []}"},
-                       {"fit_until: 0.1501 s", "fit_until: 0.0801 s"},
-                       {"    clock_deviation: 10 ms\n", ""}});
-  ASSERT_EQ(study.time_step, StepDependentForce::kFirstStep);
+      folder, {{"motion: {time_step: 1.5 ms}\n", ""},
+               {"fit: {parameters: [{name: young_modulus}, {name: mass_damping.alpha}]}",
+                "fit: {parameters: []}"},
+               {"fit_until: 0.1501 s", "fit_until: 0.0801 s"},
+               {"    clock_deviation: 10 ms\n", ""}});
+  EXPECT_EQ(study.time_step, StepDependentForce::kFirstStep);
   study.effects.push_back(std::make_shared<const StepDependentForce>());
+  return study;
+}
+
+// Two estimates of the error of a step take six predictions.
+TEST_F(AdaptiveTimeStepOfABar, EndsWhereItsEstimatesHaveUsedUpTheBudget) {
+  PredictionStudy study = WithoutAStepThatIsShortEnough(folder_.Path());
+  constexpr int kLeft = 8;  // predictions
+  FitBudget budget(study.time_step);
+  budget.Spend(static_cast<int>(FitBudget::kPredictions) - kLeft, study.time_step);
+  SilentProgress progress;
+  const AdaptedFit fit =
+      FitWithAdaptiveTimeStep(BarMesh({3, 1, 1}, 1), &study, &progress, nullptr, &budget);
+  EXPECT_THAT(fit.note, testing::HasSubstr("the predictions that a fit may take are used up"));
+  EXPECT_GE(study.time_step, StepDependentForce::kFirstStep / 4) << "shortened once at most";
+  EXPECT_TRUE(budget.IsUsedUp(StepDependentForce::kFirstStep));
+}
+
+TEST_F(AdaptiveTimeStepOfABar, SaysWhereNoStepIsShortEnough) {
+  PredictionStudy study = WithoutAStepThatIsShortEnough(folder_.Path());
   SilentProgress progress;
   const AdaptedFit fit = FitWithAdaptiveTimeStep(BarMesh({3, 1, 1}, 1), &study, &progress);
   ASSERT_FALSE(fit.calibration.estimates.empty()) << fit.calibration.message;

@@ -79,6 +79,8 @@ TEST_F(FitOutOfBudget, EndsTheStagesOfAFitFromTheStart) {
   ExpectUnusableButBetter(fit, problem_.Start());
   EXPECT_NEAR(fit.start_rms, RmsAt(problem_.Start()), 1e-3 * fit.start_rms);
   EXPECT_LE(fit.predictions, kMost);
+  // The prediction at the start values, which start_rms needs, counts as well.
+  EXPECT_EQ(budget.PredictionsLeft(study_.time_step), kLeft - fit.predictions - 1);
 }
 
 // A first part over which the body hardly deforms can end at any modulus.

@@ -65,8 +65,7 @@ Motions MotionsOf(const std::string& changes, InpDialect dialect, bool with_moti
   const Model placed = model.PlacedModel(nuisance);
   std::vector<double> frames;
   for (const int frame : model.recording().frames)
-    if (with_motion)
-      frames.push_back(model.recording().recording.times[static_cast<size_t>(frame)]);
+    if (with_motion) frames.push_back(model.FrameTime(frame));
   PortableModel described = DescribeModel(placed, mesh, options, frames, {{"clamp"}, {}});
   described.run = "silicone_beam";
 

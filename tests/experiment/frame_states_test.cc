@@ -47,7 +47,7 @@ TEST(FrameStates, KeepDoubtsAboutNormals) {
   EXPECT_THAT(states[1].notes, Contains(HasSubstr("p1.csv: 1 of 231 normals are zero")));
 
   std::filesystem::create_directories(folder / "states");
-  SaveFrameStates(states, folder / "states");
+  WriteFrameStates(states, folder / "states");
   const std::vector<FrameState> read = ReadFrameStates(folder / "states");
   ASSERT_EQ(read.size(), 2u);
   EXPECT_EQ(read[0].notes, states[0].notes);

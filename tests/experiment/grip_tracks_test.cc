@@ -158,6 +158,10 @@ TEST(RecordedGrips, OnAPathCountFromTheTimeAtWhichTheBodyIsUndeformed) {
                                   Eigen::Translation3d(-grip.pivot);
   const Eigen::Matrix3Xd moved = (about * rest).colwise() + Eigen::Vector3d(0, 0.02, 0);
   EXPECT_LT((held.motion(2) - moved).norm(), 1e-12);
+  constexpr double kLittle = 1e-6;  // s
+  const Eigen::Matrix3Xd before = (held.motion(2) - held.motion(2 - kLittle)) / kLittle;
+  const Eigen::Matrix3Xd behind = (held.motion(2 + kLittle) - held.motion(2)) / kLittle;
+  EXPECT_LT((behind - before).norm(), 1e-4 * before.norm()) << "it goes on behind its last row";
 }
 
 TEST(RecordedGrips, AreRefusedWhereTheLastFrameDoesNotShowThem) {

@@ -69,7 +69,11 @@ TEST(ListedRegions, AreRefusedWhereTheNumbersAreNotThoseOfTheMesh) {
                   HasSubstr("box.off"), HasSubstr("\"clamp\" lists node 8; there are 8 nodes"))));
   const std::map<std::string, std::string> divided{{"order: 2", "preserve_surface: false"}};
   EXPECT_THAT([&] { StudyOfBar(folder, "nodes: [0, 1, 2]", divided); },
-              ThrowsMessage<InputError>(HasSubstr("`mesh: {preserve_surface: false}` adds nodes")));
+              ThrowsMessage<InputError>(AllOf(
+                  HasSubstr("region \"clamp\" lists nodes by their numbers, but they are "
+                            "vertices of the given surface"),
+                  HasSubstr("`mesh: {preserve_surface: false}` adds others"),
+                  HasSubstr("set `preserve_surface: true`; or describe the region by a box"))));
   EXPECT_NO_THROW(StudyOfBar(folder, kClampedFace, divided));
 }
 

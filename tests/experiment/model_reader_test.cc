@@ -30,6 +30,22 @@ TEST(Profile, RefusesTimesThatDoNotAscendAndUnevenLists) {
   }
 }
 
+TEST(AuxeticWarning, NamesTheFirstNegativePoissonRatio) {
+  const auto warning = [](const std::string& ratio, const std::string& effects) {
+    return AuxeticWarning(ReadEffects(
+        Config::Parse("material: {law: linear, young_modulus: 0.1 MPa, poisson_ratio: " + ratio +
+                          "}\neffects: [" + effects + "]",
+                      "a.yaml")));
+  };
+  const std::string branch =
+      "{type: viscoelastic_branch, modulus: 10 kPa, relaxation_time: 1 s, poisson_ratio: -0.2}";
+  EXPECT_THAT(warning("-0.3", ""), testing::HasSubstr("linear.poisson_ratio is -0.3: an auxetic"));
+  EXPECT_THAT(warning("0.3", branch),
+              testing::HasSubstr("viscoelastic_branch.poisson_ratio is -0.2: an auxetic"));
+  EXPECT_EQ(warning("0", ""), "");
+  EXPECT_THROW(warning("0.5", ""), InputError);
+}
+
 Config WithEffects(const std::string& effects) {
   return Config::Parse(
       "material: {law: linear, young_modulus: 0.1 MPa, poisson_ratio: 0.3}\neffects:\n" + effects,

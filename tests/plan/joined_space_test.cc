@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <string>
+#include <vector>
 
 #include "diagnosis/projected_hypotheses.h"
 #include "diagnosis/synthetic_space.h"
@@ -15,10 +19,10 @@ namespace {
 
 using ::testing::ElementsAre;
 
-TEST(SpaceOfRivals, KeepsTheBaseAndTheRivals) {
+TEST(SpaceOfEffects, KeepsTheBaseAndTheEffects) {
   const SyntheticSpace synthetic;
   const HypothesisSpace all = synthetic.With(SyntheticSpace::Noise(1) - 9 * synthetic.Of("fibres"));
-  const HypothesisSpace rivals = SpaceOfRivals(all, {"fibres", "mass_damping"});
+  const HypothesisSpace rivals = SpaceOfEffects(all, {"fibres", "mass_damping"});
   ASSERT_EQ(rivals.hypotheses.size(), 2u);
   EXPECT_EQ(rivals.hypotheses[0].name, "mass_damping");
   EXPECT_THAT(rivals.hypotheses[1].columns, ElementsAre(3));
@@ -30,12 +34,118 @@ TEST(SpaceOfRivals, KeepsTheBaseAndTheRivals) {
   EXPECT_NEAR(kept[1], factors[3], 1e-9);
 }
 
+PlannedRival Rival(const std::vector<std::string>& effects) {
+  PlannedRival rival;
+  rival.effect = effects.size() == 2 ? effects[0] + " with " + effects[1] : effects[0];
+  rival.effects = effects;
+  return rival;
+}
+
+// Drag has a second variant, which stands behind the other effects.
+TEST(SpaceOfRivals, CombinesTheVariantsOfAPair) {
+  SyntheticSpace synthetic;
+  synthetic.hypotheses[0].selection_penalty = 0.5;
+  synthetic.hypotheses[2].selection_penalty = 0.25;
+  synthetic.Add(HypothesisKind::kEffect, "drag", synthetic.Of("fibres"));
+  const HypothesisSpace effects =
+      SpaceOfEffects(synthetic.With(SyntheticSpace::Noise(1)), {"drag", "gravity"});
+  const HypothesisSpace rivals =
+      SpaceOfRivals(effects, {Rival({"gravity"}), Rival({"drag", "gravity"})});
+  ASSERT_EQ(rivals.hypotheses.size(), 3u);
+  EXPECT_EQ(rivals.hypotheses[0].name, "gravity");
+  EXPECT_THAT(rivals.hypotheses[0].columns, ElementsAre(3, 4, 5));
+  EXPECT_EQ(rivals.hypotheses[1].name, "drag with gravity");
+  EXPECT_THAT(rivals.hypotheses[1].columns, ElementsAre(2, 3, 4, 5));
+  EXPECT_EQ(rivals.hypotheses[1].selection_penalty, 0.75);
+  EXPECT_EQ(rivals.hypotheses[2].name, "drag with gravity");
+  EXPECT_THAT(rivals.hypotheses[2].columns, ElementsAre(6, 3, 4, 5));
+  EXPECT_EQ(rivals.model.products(), effects.model.products());
+}
+
+// Both are missing: the pair has more evidence than either, and its columns give both sizes.
+TEST(SpaceOfRivals, WeighsAPairWithTheColumnsOfBothEffects) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd residual =
+      SyntheticSpace::Noise(3) - 15 * synthetic.Of("drag") - 12 * synthetic.Of("fibres");
+  const HypothesisSpace rivals =
+      SpaceOfRivals(SpaceOfEffects(synthetic.With(residual), {"drag", "fibres"}),
+                    {Rival({"drag"}), Rival({"fibres"}), Rival({"drag", "fibres"})});
+  const ProjectedHypotheses beside(rivals);
+  const Eigen::VectorXd factors = beside.FactorsOfResidual();
+  EXPECT_GT(factors[2], factors[0] + 10);
+  EXPECT_GT(factors[2], factors[1] + 10);
+  const FoundEffect pair = FindEffect(rivals, "drag with fibres");
+  ASSERT_EQ(pair.amounts.size(), 2);
+  EXPECT_NEAR(pair.amounts[0], 15, 5);  // the noise moves each by about 1
+  EXPECT_NEAR(pair.amounts[1], 12, 5);
+}
+
+// A pair contains each of its effects, which can therefore be told from it in one direction only:
+// by what the pair predicts beyond everything that the effect and the base can.
+TEST(SpaceOfRivals, SeparatesAPairFromItsEffects) {
+  const SyntheticSpace synthetic;
+  const HypothesisSpace rivals =
+      SpaceOfRivals(SpaceOfEffects(synthetic.With(SyntheticSpace::Noise(4)), {"drag", "fibres"}),
+                    {Rival({"drag"}), Rival({"drag", "fibres"})});
+  const FoundEffect alone{"drag", {2}, Eigen::VectorXd::Constant(1, 9)};
+  const FoundEffect pair{"drag with fibres", {2, 3}, Eigen::Vector2d(5, 7)};
+  Eigen::MatrixXd known(SyntheticSpace::kRows, SyntheticSpace::kBase + 1);
+  known << synthetic.columns.leftCols(SyntheticSpace::kBase), synthetic.Of("drag");
+  const Eigen::VectorXd beyond = 7 * synthetic.Of("fibres");
+  const double expected =
+      (beyond - known * known.householderQr().solve(beyond).eval()).squaredNorm();
+  EXPECT_GT(expected, 20);
+  for (const std::vector<FoundEffect>& order :
+       {std::vector<FoundEffect>{alone, pair}, std::vector<FoundEffect>{pair, alone}}) {
+    const std::vector<RecordedSeparation> found = SeparationsOf(rivals, order);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0].lambda, expected, 1e-8 * expected);
+  }
+}
+
+// Drag can only be positive, and the residual asks for a negative one. The evidence of the pair is
+// the integral over its positive amounts of the evidence of the fibres beside each of them.
+TEST(SpaceOfRivals, TruncatesAPositiveAmountOfAPair) {
+  constexpr int kDrag = 2, kFibres = 3;
+  constexpr double kPrior = 20;  // SyntheticSpace
+  SyntheticSpace synthetic;
+  synthetic.priors[kDrag].positive = true;
+  synthetic.columns.col(synthetic.hypotheses[3].columns[0]) +=
+      0.5 * synthetic.Of("drag");  // the fibres resemble drag
+  const Eigen::VectorXd residual = SyntheticSpace::Noise(5) + 4 * synthetic.Of("drag");
+  const HypothesisSpace rivals =
+      SpaceOfRivals(SpaceOfEffects(synthetic.With(residual), {"drag", "fibres"}),
+                    {Rival({"fibres"}), Rival({"drag", "fibres"})});
+  const ProjectedHypotheses beside(rivals);
+  const Eigen::VectorXd toward = beside.Project(rivals.model.toward());
+  const Eigen::VectorXd factors = beside.LogBayesFactors(toward);
+  ASSERT_NE(beside.products()(kDrag, kFibres), 0);
+
+  constexpr int kSteps = 4000;
+  constexpr double kLargest = 40, kStep = kLargest / kSteps;
+  double sum = 0;
+  for (int k = 0; k < kSteps; ++k) {
+    const double amount = (k + 0.5) * kStep;
+    const double prior = 2 * std::exp(-0.5 * amount * amount / (kPrior * kPrior)) /
+                         (kPrior * std::sqrt(2 * std::numbers::pi));
+    const double misfit =
+        2 * amount * toward[kDrag] + amount * amount * beside.products()(kDrag, kDrag);
+    const Eigen::VectorXd left = toward + amount * beside.products().col(kDrag);
+    sum += kStep * prior * std::exp(beside.LogBayesFactors(left)[0] - 0.5 * misfit);
+  }
+  EXPECT_NEAR(factors[1], std::log(sum), 1e-3);
+  const size_t pair = 1;
+  const Eigen::VectorXd amounts = beside.AmountsOf(pair, toward).value;
+  EXPECT_EQ(amounts[0], 0) << "as the data ask for a negative one";
+  EXPECT_NEAR(amounts[1], beside.AmountsOf(0, toward).value[0], 1e-9) << "as without drag";
+}
+
 // Two recordings. The second has a column of its own, which resembles an effect and has a prior
 // that allows it an amount about as large as the noise.
 struct TwoRecordings {
   SyntheticSpace first{0.3}, second{1.5};
-  HypothesisSpace now = SpaceOfRivals(first.With(SyntheticSpace::Noise(2) - 9 * first.Of("drag")),
-                                      {"drag", "mass_damping"});
+  HypothesisSpace now = SpaceOfEffects(first.With(SyntheticSpace::Noise(2) - 9 * first.Of("drag")),
+                                       {"drag", "mass_damping"});
   PlannedColumns planned{second.columns.leftCols(SyntheticSpace::kBase),
                          second.Of("drag") + 0.3 * second.Of("clock"),
                          {{0, 1, false}},
@@ -112,7 +222,7 @@ TEST(JoinedSpace, DrawsPositiveAmountsFromTheTruncatedPosterior) {
   SyntheticSpace first;
   first.priors[kDrag].positive = true;
   first.columns.col(0) += first.Of("drag");
-  const HypothesisSpace now = SpaceOfRivals(
+  const HypothesisSpace now = SpaceOfEffects(
       first.With(SyntheticSpace::Noise(2) + 3 * first.Of("drag")), {"drag", "mass_damping"});
   PlannedColumns planned{Eigen::MatrixXd::Zero(SyntheticSpace::kRows, SyntheticSpace::kBase),
                          Eigen::MatrixXd(SyntheticSpace::kRows, 0),
@@ -151,6 +261,74 @@ TEST(JoinedSpace, DrawsPositiveAmountsFromTheTruncatedPosterior) {
   EXPECT_NEAR(sum[1] / kDraws, size, 4 * deviation / std::sqrt(kDraws));
   EXPECT_NEAR(sum[0] / kDraws, parameter, 4 * std::sqrt(posterior(0, 0) / kDraws));
   EXPECT_LT(absent, kDraws / 50);
+}
+
+// Two alike effects at once, which can only be positive: the recordings know their sum better than
+// their difference. They and a parameter have the mean and the spread of those draws from the
+// posterior in which both are positive. The planned recording shows them without noise that counts.
+TEST(JoinedSpace, DrawsTwoAlikePositiveAmountsTogether) {
+  constexpr int kDrag = SyntheticSpace::kBase, kMassDamping = kDrag + 1;
+  SyntheticSpace first(0.1);
+  first.priors[kDrag].positive = first.priors[kMassDamping].positive = true;
+  first.columns.col(0) += 0.5 * first.Of("drag");
+  const HypothesisSpace now = SpaceOfEffects(
+      first.With(SyntheticSpace::Noise(2) - 5 * first.Of("drag") - 5 * first.Of("mass_damping")),
+      {"drag", "mass_damping"});
+  PlannedColumns planned{Eigen::MatrixXd::Zero(SyntheticSpace::kRows, SyntheticSpace::kBase),
+                         Eigen::MatrixXd(SyntheticSpace::kRows, 0),
+                         {},
+                         Eigen::MatrixXd(SyntheticSpace::kRows, 2)};
+  planned.parameters.col(0) = 1e4 * first.Of("gravity").col(0);
+  planned.variants << 1e4 * first.Of("clock"), 1e4 * first.Of("fibres");
+  const JoinedSpace space(now, planned);
+  const FoundEffect both{"both", {kDrag, kMassDamping}, Eigen::Vector2d::Zero()};
+
+  const std::vector<int> known = {0, 1, kDrag, kMassDamping}, shown = {0, kDrag, kMassDamping};
+  Eigen::Matrix4d precision = now.model.products()(known, known);
+  precision.diagonal().tail<2>().array() += 1.0 / (20 * 20);
+  const Eigen::Matrix4d posterior = precision.inverse();
+  const Eigen::Vector4d mean = -posterior * now.model.toward()(known);
+  EXPECT_LT(posterior(2, 3), -0.9 * std::sqrt(posterior(2, 2) * posterior(3, 3)));
+  // Of the parameter, the two amounts and their sum.
+  struct Moments {
+    void Add(const Eigen::Vector3d& amounts) {
+      const Eigen::Vector4d all(amounts[0], amounts[1], amounts[2], amounts[1] + amounts[2]);
+      sum += all;
+      squares += all.cwiseAbs2();
+      ++count;
+    }
+    Eigen::Array4d Mean() const { return sum / count; }
+    Eigen::Array4d Deviation() const { return (squares.array() / count - Mean().square()).sqrt(); }
+    Eigen::Vector4d sum = Eigen::Vector4d::Zero(), squares = Eigen::Vector4d::Zero();
+    int count = 0;
+  };
+  const Eigen::Matrix4d root = posterior.llt().matrixL();
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  Moments expected, found;
+  for (int k = 0; k < 200000; ++k) {
+    const Eigen::Vector4d amounts =
+        mean + root * Eigen::Vector4d::NullaryExpr([&] { return normal(random); });
+    if (amounts[2] > 0 && amounts[3] > 0) expected.Add(amounts({0, 2, 3}));
+  }
+  EXPECT_GT(expected.count, 20000);
+
+  const Eigen::Matrix3d seen =
+      (space.joined().model.products() - now.model.products())(shown, shown);
+  constexpr int kDraws = 4000;
+  for (int k = 0; k < kDraws; ++k) {
+    const Eigen::VectorXd drawn = space.DrawToward(both, 7, static_cast<uint64_t>(k));
+    const Eigen::Vector3d amounts = -seen.inverse() * (drawn - now.model.toward())(shown).eval();
+    found.Add(amounts);
+    EXPECT_GT(std::min(amounts[1], amounts[2]), -1e-3);
+  }
+  // More than four standard errors.
+  const double error = 5 / std::sqrt(kDraws);
+  for (int k = 0; k < 4; ++k) {
+    const double deviation = expected.Deviation()[k];
+    EXPECT_NEAR(found.Mean()[k], expected.Mean()[k], error * deviation) << k;
+    EXPECT_NEAR(found.Deviation()[k], deviation, error * deviation) << k;
+  }
 }
 
 // A column of its own without a prior takes everything that it can explain.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +11,7 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/parallel.h"
+#include "diagnosis/decision_rules.h"
 #include "diagnosis/diagnosis_run.h"
 #include "diagnosis/recording_power.h"
 #include "plan/plan_run.h"
@@ -27,6 +29,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 // A recording that is too noisy for its rivals: mass damping and drag act alike.
@@ -114,6 +117,56 @@ class PlanOfABar : public ::testing::Test {
       most = std::max(most, rival.named_now);
     }
     EXPECT_GT(most, 0);
+  }
+
+  // As if the diagnosis had left the two best effects together as well.
+  void ExpectAPairIsWeighed(const Protocol& protocol) const {
+    const FittedRun fitted = OpenRun(Run());
+    KeptDiagnosis kept = *FindDiagnosis(Run());
+    std::vector<HypothesisProbability>& all = kept.record.decision.probabilities;
+    std::vector<std::string> best;
+    double evidence = 0;
+    for (const HypothesisProbability& one : all) {
+      if (one.kind != HypothesisProbability::Kind::kEffect || best.size() == 2) continue;
+      if (best.empty()) evidence = one.evidence;
+      best.push_back(one.names.front());
+    }
+    ASSERT_EQ(best.size(), 2u);
+    HypothesisProbability& pair = all.emplace_back();
+    pair.kind = HypothesisProbability::Kind::kPair;
+    pair.names = {best[1], best[0]};
+    pair.evidence = evidence + std::log(kPriorEffects / kPriorPairs);
+    SetPosterior(&all);
+    SilentProgress silent;
+    const PlanRecord plan = MakePlan({fitted, kept.record, kept.decision}, {protocol}, &silent);
+    EXPECT_THAT(plan.not_predicted, Not(Contains(HasSubstr(" with "))));
+    const auto rival = std::find_if(plan.rivals.begin(), plan.rivals.end(),
+                                    [](const PlannedRival& one) { return one.IsPair(); });
+    ASSERT_NE(rival, plan.rivals.end());
+    const std::string name = std::min(best[0], best[1]) + " with " + std::max(best[0], best[1]);
+    EXPECT_EQ(rival->effect, name);
+    EXPECT_GT(rival->probability, 0.1);
+    const PlannedOutcome& outcome = plan.outcomes.at(0);
+    ASSERT_TRUE(outcome.IsPlayable()) << outcome.message;
+    ASSERT_EQ(outcome.named.size(), plan.rivals.size());
+    const double named = outcome.named[static_cast<size_t>(rival - plan.rivals.begin())];
+    EXPECT_GE(named, 0);
+    EXPECT_LE(named, 1);
+    double farthest = 0;  // λ is 0 from an effect beside which the pair has no amount of the other
+    for (const PlannedPair& one : outcome.pairs) {
+      if (one.first != name && one.second != name) continue;
+      EXPECT_GE(one.lambda_then, one.lambda_now - 1e-6) << one.first << " " << one.second;
+      farthest = std::max(farthest, one.lambda_now);
+    }
+    EXPECT_GT(farthest, 0);
+    std::vector<std::string> sizes;
+    for (const PlannedSize& size : outcome.sizes) {
+      if (size.effect != name) continue;
+      sizes.push_back(size.parameter);
+      EXPECT_LT(size.half_width_then, size.half_width_now) << size.parameter;
+    }
+    EXPECT_THAT(sizes, Contains(testing::StartsWith(best[0] + ".")));
+    EXPECT_THAT(sizes, Contains(testing::StartsWith(best[1] + ".")));
   }
 
   // A mass beside the object.
@@ -221,6 +274,7 @@ TEST_F(PlanOfABar, PrefersWhatPartsTheRivals) {
   EXPECT_THAT(text, HasSubstr("least λ"));
 
   ExpectWhatTheDiagnosisHasNotSimulatedIsSimulated();
+  ExpectAPairIsWeighed(stronger);
   ExpectPlayable(kept);
   ExpectFailuresAreSaid();
   ExpectThePlanIsKeptWithoutItsExperiment();

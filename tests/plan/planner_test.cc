@@ -13,6 +13,7 @@
 namespace lacuna {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Kind = HypothesisProbability::Kind;
 
@@ -32,10 +33,43 @@ TEST(RivalsOf, AreTheEffectsAmongTheMostProbableHypotheses) {
       Probable(Kind::kNuisance, {"mesh"}, 0.12), Probable(Kind::kPair, {"drag", "gravity"}, 0.05),
       Probable(Kind::kEffect, {"pressure"}, 0.03)};
   const std::vector<PlannedRival> rivals = RivalsOf(diagnosis);
-  ASSERT_EQ(rivals.size(), 2u);  // gravity is kept in a pair only
+  ASSERT_EQ(rivals.size(), 3u);
   EXPECT_EQ(rivals[0].effect, "mass_damping");
+  EXPECT_FALSE(rivals[0].IsPair());
   EXPECT_EQ(rivals[1].effect, "drag");
+  EXPECT_THAT(rivals[1].effects, ElementsAre("drag"));
   EXPECT_EQ(rivals[1].probability, 0.30);
+  EXPECT_EQ(rivals[2].effect, "drag with gravity");
+  EXPECT_THAT(rivals[2].effects, ElementsAre("drag", "gravity"));
+  EXPECT_EQ(rivals[2].title, "drag together with gravity");
+  EXPECT_EQ(rivals[2].probability, 0.05);
+}
+
+// A pair is the same in either order, and with a nuisance beside it.
+TEST(RivalsOf, HaveEachPairOnce) {
+  DiagnosisRecord diagnosis;
+  diagnosis.decision.probabilities = {Probable(Kind::kPair, {"gravity", "drag"}, 0.50),
+                                      Probable(Kind::kEffect, {"pressure"}, 0.30),
+                                      Probable(Kind::kPair, {"drag", "gravity", "clock"}, 0.20),
+                                      Probable(Kind::kNuisance, {"clock"}, 0)};
+  const std::vector<PlannedRival> rivals = RivalsOf(diagnosis);
+  ASSERT_EQ(rivals.size(), 2u);
+  EXPECT_EQ(rivals[0].effect, "drag with gravity");
+  EXPECT_NEAR(rivals[0].probability, 0.70, 1e-12);
+  EXPECT_EQ(rivals[1].effect, "pressure");
+}
+
+// Drag is more probable than either of its rivals, though none of its hypotheses is. Rivals of the
+// same probability keep their order.
+TEST(RivalsOf, AreSortedByTheirProbabilities) {
+  DiagnosisRecord diagnosis;
+  diagnosis.decision.probabilities = {
+      Probable(Kind::kEffect, {"gravity"}, 0.28), Probable(Kind::kEffect, {"drag", "clock"}, 0.24),
+      Probable(Kind::kEffect, {"drag"}, 0.24),    Probable(Kind::kEffect, {"pressure"}, 0.12),
+      Probable(Kind::kEffect, {"fibres"}, 0.12),  Probable(Kind::kNuisance, {"clock"}, 0)};
+  std::vector<std::string> names;
+  for (const PlannedRival& rival : RivalsOf(diagnosis)) names.push_back(rival.effect);
+  EXPECT_THAT(names, ElementsAre("drag", "gravity", "pressure", "fibres"));
 }
 
 // A nuisance beside an effect is not to be decided upon.
@@ -76,15 +110,32 @@ TEST(MakePlan, SaysThatNothingIsLeftToBeDecided) {
       HasSubstr("has left no rivals"));
 }
 
-// A plan for single effects would give both partners the same probability.
-TEST(MakePlan, RefusesPairsOfEffects) {
+// The diagnosis says that it is missing; the partner shows in a model that has it.
+TEST(MakePlan, AsksToAddWhatAllHypothesesContain) {
   EXPECT_THAT(WhyNoPlan({Probable(Kind::kPair, {"drag", "gravity"}, 0.7),
                          Probable(Kind::kPair, {"pressure", "drag"}, 0.3)}),
-              ::testing::AllOf(HasSubstr("drag with gravity, pressure with drag"),
-                               HasSubstr("add drag, which all that it keeps have in common")));
-  EXPECT_THAT(WhyNoPlan({Probable(Kind::kPair, {"drag", "gravity"}, 0.6),
-                         Probable(Kind::kEffect, {"pressure"}, 0.4)}),
-              HasSubstr("add one of them"));
+              ::testing::AllOf(HasSubstr("(drag with gravity, drag with pressure) contain drag"),
+                               HasSubstr("add drag to the model first")));
+  EXPECT_THAT(WhyNoPlan({Probable(Kind::kPair, {"drag", "gravity"}, 0.7),
+                         Probable(Kind::kEffect, {"gravity"}, 0.3)}),
+              HasSubstr("add gravity to the model first"));
+}
+
+TEST(PlanReport, NamesTheSizesOfAPairWithTheirEffects) {
+  PlanRecord plan;
+  plan.rivals = {{"drag", "drag", 0.6, 0.5, {"drag"}},
+                 {"drag with gravity", "drag together with gravity", 0.4, 0, {"drag", "gravity"}}};
+  PlannedOutcome& outcome = plan.outcomes.emplace_back();
+  outcome.named = {0.9, 0.8};
+  outcome.probability = 0.86;
+  outcome.sizes = {{"drag", "coefficient", "kg/m^3", 3, 1, 0.5},
+                   {"drag with gravity", "drag.coefficient", "kg/m^3", 2, 1, 0.5}};
+  const std::string report = PlanReport(plan);
+  EXPECT_THAT(report, HasSubstr("  drag.coefficient: 3 ± 0.5 kg/m^3, now ± 1 kg/m^3\n"));
+  EXPECT_THAT(report, HasSubstr("  drag.coefficient (drag with gravity): 2 ± 0.5 kg/m^3"));
+  std::string text = report;
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  EXPECT_THAT(text, HasSubstr("two effects at once count as not named"));
 }
 
 TEST(PlanReport, HasNoTableWhereNoRecordingCanBeMade) {

@@ -107,6 +107,44 @@ TEST_F(ReadingAPredictionStudy, WarnsWhereNoFrameIsHeldOut) {
   EXPECT_EQ(late.recordings[0].FittedFrames(), late.recordings[0].frames);
 }
 
+// The first frame that is used shows the undeformed shape, but the path has rows before it.
+TEST_F(ReadingAPredictionStudy, WarnsOfAPathThatMovesBeforeTheUndeformedFrame) {
+  PredictionStudy study = ReadBarStudy(folder_.Path(), kNoHold);
+  PredictedRecording& item = study.recordings[0];
+  item.recording.reference.source = ReferenceSource::kFirstFrame;
+  RecordedGrip grip;
+  grip.region.name = "tool";
+  grip.motion = GripMotion::kGiven;
+  grip.file = "path.csv";
+  grip.times = Eigen::Vector3d(-0.1, 0, 0.3);
+  grip.displacements = Eigen::Matrix3Xd::Zero(3, 3);
+  const auto warned = testing::Contains(HasSubstr("counts from the first row of its path"));
+  for (const double before : {0.0, 5e-5}) {
+    grip.displacements.row(2) << 0, before, 0.01;
+    item.recording.object.grips = {grip};
+    EXPECT_THAT(StudyWarnings(study), testing::Not(warned)) << before;
+  }
+  grip.displacements(2, 1) = 2e-4;
+  item.recording.object.grips = {grip};
+  EXPECT_THAT(
+      StudyWarnings(study),
+      testing::Contains(HasSubstr(
+          "bar: the first frame that is used, at 0 s, is to show the object undeformed, but "
+          "\"tool\" has moved by 0.2 mm and 0° by then")));
+  item.recording.reference.source = ReferenceSource::kMesh;
+  EXPECT_THAT(StudyWarnings(study), testing::Not(warned));
+}
+
+TEST_F(ReadingAPredictionStudy, WarnsOfANegativePoissonRatioOnce) {
+  const auto warnings = [&](const std::string& ratio) {
+    return StudyWarnings(
+        ReadBarStudy(folder_.Path(), {{"poisson_ratio: 0.4", "poisson_ratio: " + ratio}}));
+  };
+  const auto warned = HasSubstr("poisson_ratio is -0.4: an auxetic material");
+  EXPECT_THAT(warnings("-0.4"), testing::Contains(warned).Times(1));
+  EXPECT_THAT(warnings("0.4"), testing::Not(testing::Contains(HasSubstr("auxetic"))));
+}
+
 TEST_F(ReadingAPredictionStudy, WarnsOfSettingsOfScansWithoutAScan) {
   const auto warnings = [&](const std::string& scan) {
     return StudyWarnings(

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "support/held_bar.h"
 #include "support/scanned_bar.h"
 #include "support/temporary_folder.h"
 
@@ -69,6 +70,36 @@ TEST(ReplayedMotion, ComparesScansAsAFitDoes) {
   EXPECT_LT(sag, 5e-3);
   EXPECT_GT(motion.strain.col(last).maxCoeff(), 1e-3);
   EXPECT_TRUE(motion.up_from_gravity);
+}
+
+// Registration turns the deformation gradients of the markers with their positions: F becomes RF.
+TEST(ReplayedMotion, RegistersTheDeformationOnce) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const PredictionStudy study = ReadBarStudy(
+      folder.Path(), {{"motion: {time_step: 1.5 ms}", "motion: {time_step: 4 ms}"},
+                      {"    fit_until: 0.1501 s\n",
+                       "    to: 0.1001 s\n"
+                       "    registration: {shift_deviation: 1 mm, turn_deviation: 1 deg}\n"}});
+  const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 1));
+  const RecordingModel& model = problem.models()[0];
+  Eigen::VectorXd nuisance =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.nuisances().size()));
+  const ReplayedMotion in_place = Replay(model, nuisance);
+  for (size_t k = 0; k < model.nuisances().size(); ++k)
+    if (model.nuisances()[k].prior.name == "bar.turn_z")
+      nuisance[static_cast<Eigen::Index>(k)] = 0.5;
+  const ReplayedMotion turned = Replay(model, nuisance);
+  ASSERT_TRUE(turned.summary.IsUsable()) << turned.summary.message;
+  const Eigen::Matrix3d expected =
+      Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  ASSERT_TRUE(turned.registration.linear().isApprox(expected, 1e-12));
+  const std::vector<Eigen::Matrix3d>& before = in_place.misfit.deformation;
+  const std::vector<Eigen::Matrix3d>& after = turned.misfit.deformation;
+  ASSERT_EQ(after.size(), before.size());
+  ASSERT_EQ(after.size(), model.recording().frames.size() * model.PointCount());
+  for (size_t k = 0; k < after.size(); ++k)
+    EXPECT_TRUE(after[k].isApprox(expected * before[k], 1e-9)) << k;
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST_P(SettingDerivativeOf, AgreesWithOtherRatiosAllTheWay) {
   const std::shared_ptr<const Effect> effect = Make(kRatio);
   const int setting = ParameterIndex(effect->Card(), "poisson_ratio");
   ASSERT_TRUE(effect->Card().parameters.at(static_cast<size_t>(setting)).setting);
-  const Perturbation by_ratio = ByParameter(effect, setting);
+  const Perturbation by_ratio = ParameterPerturbation(effect, setting);
   StrainedBody moved(by_ratio.effect);
   EXPECT_EQ(moved.Move(Place(moved.body(), 1), kStepLength).norm(), 0) << "it exerts no force";
   const Eigen::VectorXd position = Place(moved.body(), 0.5);
@@ -62,7 +62,7 @@ TEST_P(SettingDerivativeOf, AgreesWithOtherRatiosAllTheWay) {
 
 TEST_P(SettingDerivativeOf, LeavesOtherParametersToTheEffect) {
   const std::shared_ptr<const Effect> effect = Make(0.4);
-  const Perturbation by_size = ByParameter(effect, 0);
+  const Perturbation by_size = ParameterPerturbation(effect, 0);
   EXPECT_EQ(by_size.effect, effect);
   EXPECT_EQ(by_size.parameter, 0);
 }

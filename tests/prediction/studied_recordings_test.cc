@@ -130,7 +130,14 @@ TEST_F(ReadingAPredictionStudy, RefusesAGripWhosePathDoesNotCoverTheFrames) {
       "gripped: [{name: tool, half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}, path: "
       "{file: load.csv, time: t, x: x, y: y, z: z}}]\nreference";
   EXPECT_THAT(MessageAfterInRecording({{"reference", grip}}),
-              ContainsRegex("load.csv covers 0.05 s to 0.2 s, the frames 0 s to 0.25 s"));
+              ContainsRegex("load.csv covers 0.05 s to 0.2 s, the frames 0 s to 0.25 s: it begins "
+                            "50 ms after the first of them, and ends 50 ms before the last of "
+                            "them; extend this file, which gripped.0..path names in "
+                            ".*recording.yaml, or use fewer frames"));
+  Replacements from_first_row_to_last = kNoHold;
+  from_first_row_to_last["    fit_until"] = "    from: 0.05 s\n    to: 0.2 s\n    fit_until";
+  EXPECT_EQ(MessageAfterInRecording({{"reference", grip}}, from_first_row_to_last),
+            "nothing was refused");
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesPlacementsThatSayNothing) {

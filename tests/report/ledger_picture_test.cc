@@ -18,6 +18,14 @@ LedgerPicture Example() {
   return {"held-out error", {{"model as given", 8e-4}, {"with damping", 2e-4}}, 1e-4, "noise"};
 }
 
+// All markers have the noise of a typical one.
+Ledger WithEqualNoise(Ledger ledger) {
+  for (LedgerModel& model : ledger.models)
+    model.errors.rms_over_sigma =
+        model.errors.held_out_rms / (std::sqrt(3.0) * ledger.models[0].record.noise);
+  return ledger;
+}
+
 bool IsNear(const unsigned char* pixel, int red, int green, int blue) {
   constexpr int kTolerance = 8;  // of 255, for rounding of colours
   return std::abs(pixel[0] - red) < kTolerance && std::abs(pixel[1] - green) < kTolerance &&
@@ -75,7 +83,7 @@ TEST(LedgerPicture, HasNoLineIfTheNoiseIsUnknown) {
 
 // The title of the effect, as on the page of the report, and not its name.
 TEST(LedgerPicture, ShowsTheModelsThatCouldBeFittedUnderTheirLabels) {
-  Ledger ledger = SmallLedger();
+  Ledger ledger = WithEqualNoise(SmallLedger());
   ledger.models.front().diagnosis->ranking.front().title = "Drag (of the surrounding air)";
   const LedgerPicture picture = PictureOf(ledger);
   ASSERT_EQ(picture.models.size(), 2u);
@@ -83,9 +91,34 @@ TEST(LedgerPicture, ShowsTheModelsThatCouldBeFittedUnderTheirLabels) {
   EXPECT_EQ(picture.models[0].label, "initial model");
   EXPECT_EQ(picture.models[1].label, "with drag");
   EXPECT_EQ(picture.models[1].error, ledger.models[1].errors.held_out_rms);
+  EXPECT_EQ(picture.unit, LedgerPicture::Unit::kMetres);
   EXPECT_DOUBLE_EQ(picture.noise, std::sqrt(3.0) * ledger.models[0].record.noise);
   ledger.models[1].record.usable = false;
   EXPECT_EQ(PictureOf(ledger).models.size(), 1u);
+}
+
+void ExpectErrorsOverTheNoiseOfEachPoint(const Ledger& ledger) {
+  const LedgerPicture picture = PictureOf(ledger);
+  EXPECT_EQ(picture.unit, LedgerPicture::Unit::kNoise);
+  EXPECT_EQ(picture.title, "bar: rms error in the held-out frames, times the noise of each point");
+  EXPECT_EQ(picture.noise, 1);
+  ASSERT_EQ(picture.models.size(), 2u);
+  EXPECT_EQ(picture.models[0].error, ledger.models[0].errors.rms_over_sigma);
+  EXPECT_EQ(picture.models[1].error, ledger.models[1].errors.rms_over_sigma);
+}
+
+// The second model misses points that are more precise than a typical one.
+TEST(LedgerPicture, DividesByTheNoiseOfEachPointWherePointsHaveTheirOwn) {
+  Ledger ledger = WithEqualNoise(SmallLedger());
+  ledger.models[1].errors.rms_over_sigma *= 1.5;
+  ExpectErrorsOverTheNoiseOfEachPoint(ledger);
+}
+
+// A patch is a mean of some number of scanned points.
+TEST(LedgerPicture, DividesByTheNoiseOfEachPatchOfAScan) {
+  Ledger ledger = WithEqualNoise(SmallLedger());
+  ledger.models[0].record.recordings[0].scan.emplace();
+  ExpectErrorsOverTheNoiseOfEachPoint(ledger);
 }
 
 TEST(LedgerPictureDeathTest, RefusesAPictureWithoutModelsAndAnErrorThatIsNoNumber) {

@@ -165,6 +165,29 @@ TEST(DelimitedTable, ReadsWordsForMissingValues) {
   EXPECT_THAT(ErrorOf([] { Table("t,x\n0,1\n1,lost\n"); }), HasSubstr("got \"lost\""));
 }
 
+TEST(DelimitedTable, RefusesASummaryBelowItsLastRow) {
+  const auto error = [](const std::string& below) {
+    return ErrorOf([&] { Table("t,x,y\n0,1,2\n1,3,4\n" + below); });
+  };
+  const auto refused = [](const std::string& word) {
+    return HasSubstr("t.csv:4:1: is not a row of numbers (got \"" + word +
+                     "\"); remove summary lines at the end of the table");
+  };
+  EXPECT_THAT(error("Mean, 1.2, 3.4\n"), refused("Mean"));
+  EXPECT_THAT(error("Mean,1.2\nDeviation,0.3\n\n"), refused("Mean")) << "of another width";
+  EXPECT_THAT(error(",Mean,1.2"), refused("Mean"));
+  EXPECT_THAT(error("End of file\n,,\n"), refused("End of file"));
+  EXPECT_THAT(error("lost,1,2\n2,5,6\n"), HasSubstr("t.csv:4:1: got \"lost\"; expected a number"));
+  EXPECT_THAT(error("1.000,5,1,2\n"), HasSubstr("has 4 entries")) << "no word";
+  EXPECT_THAT(error("2,lost,6\n"), HasSubstr("t.csv:4:3: got \"lost\"; expected a number"));
+}
+
+TEST(DelimitedTable, SkipsCommentsAndEmptyLinesBelowItsLastRow) {
+  const DelimitedTable table = Table("t,x\n0,1\n1,3\n\n# Mean, 2\n  \n#end\n");
+  ASSERT_EQ(table.values.rows(), 2);
+  EXPECT_EQ(table.values.row(1), Eigen::RowVector2d(1, 3));
+}
+
 TEST(DelimitedTable, SaysThatDatesAreNotRead) {
   EXPECT_THAT(
       ErrorOf([] { Table("t,x\n2024-05-01 12:00:00.0,1\n"); }),

@@ -53,6 +53,44 @@ TEST_F(RecordingTest, AGripRotatesAndShiftsSmoothlyAlongItsPath) {
               HasSubstr("r"));
 }
 
+// The last time step of a prediction ends behind the last row of a path that ends with the frames.
+TEST(ContinuedMotion, GoesOnBehindTheLastRow) {
+  RecordedGrip grip;
+  grip.motion = GripMotion::kGiven;
+  grip.times = Eigen::Vector3d(0, 1, 1.5);
+  grip.displacements.resize(3, 3);
+  grip.displacements << 0, 0, 0, 0, 0.01, 0.03, 0, 0, 0;
+  grip.rotations = Eigen::Matrix3Xd::Zero(3, 3);
+  grip.rotations.row(2) << 0.3, 0.5, 0.6;
+  grip.pivot = {0, 0.01, 0};
+  // As much after 1.5 s as before.
+  const Eigen::Isometry3d before = MotionAt(grip, 1.25, 0), last = MotionAt(grip, 1.5, 0);
+  const Eigen::Isometry3d behind = ContinuedMotionAt(grip, 1.75, 0);
+  const auto moved = [&](const Eigen::Isometry3d& motion) -> Eigen::Vector3d {
+    return motion * grip.pivot - grip.pivot;
+  };
+  EXPECT_LT((moved(behind) - 2 * moved(last) + moved(before)).norm(), 1e-15);
+  EXPECT_GT(moved(behind).y(), 0.035);
+  EXPECT_LT(moved(behind).y(), 0.045);
+  const Eigen::AngleAxisd turn(behind.linear());
+  EXPECT_NEAR(turn.angle(), 2 * 0.3 - Eigen::AngleAxisd(before.linear()).angle(), 1e-12);
+  EXPECT_GT(turn.angle(), 0.31);
+  EXPECT_LT((turn.axis() - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
+  for (const double time : {-1.0, 0.0, 0.7, 1.5})
+    EXPECT_EQ(ContinuedMotionAt(grip, time, 0).matrix(), MotionAt(grip, time, 0).matrix()) << time;
+  const double h = 1e-6;
+  const auto at = [&](double t) { return ContinuedMotionAt(grip, t, 0).translation().eval(); };
+  EXPECT_LT((at(1.5 + h) - 2 * at(1.5) + at(1.5 - h)).norm() / h, 1e-5) << "no jump of velocity";
+}
+
+TEST(ContinuedMotion, OfASingleRowIsAtRest) {
+  RecordedGrip grip;
+  grip.motion = GripMotion::kGiven;
+  grip.times = Eigen::VectorXd::Constant(1, 0.5);
+  grip.displacements = Eigen::Matrix3Xd::Zero(3, 1);
+  EXPECT_EQ(ContinuedMotionAt(grip, 2, 0.5).matrix(), Eigen::Matrix4d::Identity());
+}
+
 TEST_F(RecordingTest, ATurnIsMadeContinuous) {
   WriteClouds(2);
   const auto load = [&](const std::string& last) {

@@ -7,6 +7,7 @@ import { grid, name, section, table } from './section.js';
 const COLOURS = ['series-first', 'series-last', 'series-2', 'series-1', 'series-4'];
 
 const isPlayable = (outcome) => !outcome.message;
+const isPair = (rival) => String(rival.effect).includes(' with ');
 
 function leastSeparation(outcome) {
   const lambdas = (outcome.pairs ?? []).map((pair) => pair.lambda_then).filter(isNumber);
@@ -20,7 +21,8 @@ function ranked(plan) {
     h('span', { class: 'mini-bar-box' }, h('span', { class: 'mini-bar', style: { width: `${Math.round(56 * outcome.probability)}px` } }), posterior(outcome.probability)),
     h('div', {}, (plan.rivals ?? []).map((rival) => h('div', { class: 'nowrap' }, `${posterior(outcome.named?.[rival.effect])} if ${rival.title}`.slice(0, 120)))),
     number(leastSeparation(outcome)), seconds(outcome.seconds)]);
-  return h('div', {}, table(`Now the right name is expected in ${percent(now)} of such cases.`,
+  const pairs = (plan.rivals ?? []).some(isPair) ? ', where two effects at once count as not named' : '';
+  return h('div', {}, table(`Now the right name is expected in ${percent(now)} of such cases${pairs}.`,
     [['recording'], ['right name', true, 'averaged over the rivals with their probabilities'], ['for each rival'], ['least λ', true, 'of two rivals, with the recording; 12 separates them in four cases of five'], ['length', true]], rows));
 }
 

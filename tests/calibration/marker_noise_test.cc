@@ -1,0 +1,35 @@
+// The noise of markers, estimated from their recording.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "prediction/recording_noise.h"
+
+namespace lacuna {
+namespace {
+
+// A steady motion adds nothing, a marker that is not seen is passed over.
+TEST(MarkerNoise, IsThatOfTheCoordinates) {
+  constexpr double kNoise = 2e-4;
+  PredictedRecording item;
+  item.recording.markers.places = Eigen::Matrix3Xd::Random(3, 20);
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, kNoise);
+  std::vector<int> frames;
+  for (int frame = 0; frame < 200; ++frame) {
+    Eigen::Matrix3Xd positions = item.recording.markers.places.array() + 0.01 * frame;
+    for (double& coordinate : positions.reshaped()) coordinate += noise(random);
+    if (frame % 3 == 0) positions.col(4).setConstant(std::nan(""));
+    item.recording.markers.positions.push_back(positions);
+    item.recording.times.push_back(0.01 * frame);
+    frames.push_back(frame);
+  }
+  // The median of 57 medians of 198 values each.
+  EXPECT_NEAR(EstimateRecordingNoise(item, frames), kNoise, 0.05 * kNoise);
+  EXPECT_EQ(EstimateRecordingNoise(item, {0, 1}), 0);
+}
+
+}  // namespace
+}  // namespace lacuna
