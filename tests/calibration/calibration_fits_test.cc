@@ -79,8 +79,19 @@ TEST_F(FitOutOfBudget, EndsTheStagesOfAFitFromTheStart) {
   ExpectUnusableButBetter(fit, problem_.Start());
   EXPECT_NEAR(fit.start_rms, RmsAt(problem_.Start()), 1e-3 * fit.start_rms);
   EXPECT_LE(fit.predictions, kMost);
-  // The prediction at the start values, which start_rms needs, counts as well.
-  EXPECT_EQ(budget.PredictionsLeft(study_.time_step), kLeft - fit.predictions - 1);
+  EXPECT_TRUE(budget.IsUsedUp(study_.time_step));
+}
+
+// The prediction at the start values, which start_rms needs, counts as well.
+TEST_F(FitOutOfBudget, CountsThePredictionAtTheStartValues) {
+  Calibration beginning;
+  beginning.usable = true;
+  beginning.parameters = problem_.Start();
+  FitBudget ample(study_.time_step);
+  const Calibration fit = FitFromStart(problem_, &progress_, &beginning, &ample);
+  ASSERT_TRUE(fit.usable) << fit.message;
+  ASSERT_FALSE(ample.IsUsedUp(study_.time_step));
+  EXPECT_EQ(ample.PredictionsLeft(study_.time_step), FitBudget::kPredictions - fit.predictions - 1);
 }
 
 // A first part over which the body hardly deforms can end at any modulus.
