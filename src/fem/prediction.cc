@@ -22,7 +22,7 @@ StepSummary Hold(const PredictionOptions& options, Stepper* stepper, MotionHisto
   if (options.held_guess.size() > 0) {
     MotionHistory near = *history;
     near.position = options.held_guess;
-    const StepSummary held = stepper->Equilibrium(options.held_force, &near, kHoldTolerance);
+    StepSummary held = stepper->Equilibrium(options.held_force, &near, kHoldTolerance);
     if (held.IsUsable()) {
       *history = near;
       return held;

@@ -151,6 +151,7 @@ HypothesisSpace SpaceOfEffects(const HypothesisSpace& space,
     }
     own.hypotheses.push_back(std::move(hypothesis));
   }
+  priors.reserve(columns.size());
   for (const int column : columns) priors.push_back(space.model.Prior(column));
   own.model = LinearGaussianModel::FromProducts(
       space.model.squares(), space.model.toward()(columns),

@@ -22,6 +22,7 @@ Eigen::MatrixXd ObservedResponse(const RecordingModel& recording, const Replayed
   const Eigen::Index components = recording.observer().Components();
   const Eigen::Index rows_of_frame = components * recording.PointCount();
   std::vector<double> times;
+  times.reserve(frames.size());
   for (const int frame : frames)
     times.push_back(item.recording.times[item.frames[static_cast<size_t>(frame)]] - motion.delay);
   const Eigen::MatrixXd basis = RotatedColumns(motion.registration.linear(), response.basis());
