@@ -26,7 +26,7 @@ double TailSeries(double z) {
 
 // ln Φ(z)
 double LogNormal(double z) {
-  if (z > kTail) return std::log(0.5 * std::erfc(-z / std::numbers::sqrt2));
+  if (z > kTail) return LogTwiceNormal(z) - std::numbers::ln2;
   return -0.5 * z * z - std::log(-z * std::sqrt(2 * std::numbers::pi)) + std::log(TailSeries(z));
 }
 
@@ -127,7 +127,7 @@ class PositivePair {
 
   // How far from the mode, in a direction, the integrand is negligible.
   double Reach(double direction) const {
-    constexpr double kNegligible = 36;
+    constexpr double kNegligible = 36;  // e⁻³⁶ is the rounding of a double
     // From here on, at the earliest, by the bound of the second derivative.
     const double slope = std::max(0.0, -direction * Slope(mode_));
     double reach =

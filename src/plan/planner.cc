@@ -25,6 +25,7 @@
 #include "fit/calibration.h"
 #include "plan/joined_space.h"
 #include "plan/planned_recording.h"
+#include "plan/rivals.h"
 #include "report/verdict_text.h"
 
 namespace lacuna {
@@ -42,27 +43,6 @@ struct Influence {
   double seconds = 0;
   ProtocolPicture picture;
 };
-
-bool IsOfEffects(const HypothesisProbability& one) {
-  return one.kind == Kind::kEffect || one.kind == Kind::kPair;
-}
-
-// The effect of a hypothesis, or the two of a pair in alphabetical order, without the nuisances
-// beside them, which stand behind.
-std::vector<std::string> EffectsOf(const std::vector<HypothesisProbability>& all,
-                                   const HypothesisProbability& one) {
-  if (one.kind != Kind::kPair) return {one.names.front()};
-  std::vector<std::string> effects = one.names;
-  std::erase_if(effects, [&](const std::string& name) { return IsNuisance(all, name); });
-  effects.resize(2, effects.front());  // a record has the name of an effect at two places once
-  std::sort(effects.begin(), effects.end());
-  return effects;
-}
-
-// PlannedRival::effect
-std::string RivalName(const std::vector<std::string>& effects) {
-  return fmt::format("{}", fmt::join(effects, " with "));
-}
 
 class Planner {
  public:
@@ -361,30 +341,6 @@ void RequireNoCommonEffect(const DiagnosisRecord& diagnosis, const PlanRecord& p
 }
 
 }  // namespace
-
-std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis) {
-  const std::vector<HypothesisProbability>& all = diagnosis.decision.probabilities;
-  std::vector<PlannedRival> rivals;
-  for (const size_t k : NameFrom(all).kept) {
-    if (!IsOfEffects(all[k])) continue;
-    std::vector<std::string> effects = EffectsOf(all, all[k]);
-    const std::string name = RivalName(effects);
-    const auto known = std::find_if(rivals.begin(), rivals.end(), [&](const PlannedRival& rival) {
-      return rival.effect == name;
-    });
-    if (known != rivals.end()) {
-      known->probability += all[k].probability;
-      continue;
-    }
-    std::string title = ShortTitle(diagnosis, effects.front());
-    if (effects.size() == 2) title += " together with " + ShortTitle(diagnosis, effects.back());
-    rivals.push_back({name, title, all[k].probability, 0, std::move(effects)});
-  }
-  std::stable_sort(rivals.begin(), rivals.end(), [](const PlannedRival& a, const PlannedRival& b) {
-    return a.probability > b.probability;
-  });
-  return rivals;
-}
 
 PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protocols,
                     Progress* progress) {

@@ -33,11 +33,6 @@ struct DiagnosedRun {
   const DecisionInput& decision;  // what the diagnosis has decided from
 };
 
-// The effects and the pairs of effects among the hypotheses that the diagnosis must keep to reach
-// kStatedProbability, the most probable one first, each with the sum over its hypotheses. Their
-// PlannedRival::named_now is not set.
-std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis);
-
 // The outcomes are sorted. A protocol that cannot be played is reported in its message. Throws
 // InputError where the diagnosis has left fewer than two hypotheses that differ in their effects,
 // or no effect among them, and where all that it keeps have an effect in common, alone or in pairs.

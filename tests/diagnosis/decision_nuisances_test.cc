@@ -19,6 +19,15 @@ using testing::ElementsAre;
 using testing::UnorderedElementsAre;
 using Kind = HypothesisProbability::Kind;
 
+// The input of a decision before which this nuisance was adopted, with plain evidence.
+DecisionInput InputWithAdopted(const SyntheticSpace& synthetic, const Eigen::VectorXd& residual,
+                               const std::string& nuisance) {
+  DecisionInput input = InputOf(synthetic, residual);
+  input.adopted = {nuisance};
+  input.adopted_evidence = 200;
+  return input;
+}
+
 // What an effect leaves may be an error of the measurement. Then nothing unknown is left, and the
 // effect is named, not the error.
 TEST(Decide, TakesWhatANuisanceExplainsBesideAnEffectForNothingUnknown) {
@@ -94,9 +103,7 @@ TEST(Decide, WeighsANuisanceAgainstAPairOnlyAfterItsFit) {
 // Nuisances in the base compete with effects in their place.
 TEST(Decide, WeighsAdoptedNuisancesAgainstEffectsInTheirPlace) {
   const SyntheticSpace synthetic;
-  DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(16));
-  input.adopted = {"jitter"};
-  input.adopted_evidence = 200;
+  DecisionInput input = InputWithAdopted(synthetic, SyntheticSpace::Noise(16), "jitter");
   EXPECT_EQ(Decide(input).verdict, Verdict::kNuisance);
   EXPECT_THAT(Decide(input).names, ElementsAre("jitter"));
   input.in_place_of_adopted.push_back({"drag", 199, synthetic.With(SyntheticSpace::Noise(16))});
@@ -115,9 +122,7 @@ TEST(Decide, WeighsAdoptedNuisancesAgainstEffectsInTheirPlace) {
 TEST(Decide, IsAmbiguousBetweenANuisanceAloneAndAnEffectBesideIt) {
   const SyntheticSpace synthetic;
   const Eigen::VectorXd noise = SyntheticSpace::Noise(16);
-  DecisionInput input = InputOf(synthetic, noise);
-  input.adopted = {"jitter"};
-  input.adopted_evidence = 200;
+  DecisionInput input = InputWithAdopted(synthetic, noise, "jitter");
   input.refits.push_back({"drag", 3.5, synthetic.With(noise)});
   const Decision decision = Decide(input);
   EXPECT_THAT(decision.record.probabilities.front().names, ElementsAre("drag", "jitter"));
@@ -129,9 +134,7 @@ TEST(Decide, IsAmbiguousBetweenANuisanceAloneAndAnEffectBesideIt) {
 TEST(Decide, NamesEveryNuisanceOnce) {
   const SyntheticSpace synthetic;
   const Eigen::VectorXd residual = SyntheticSpace::Noise(22) - 9 * synthetic.Of("clock");
-  DecisionInput input = InputOf(synthetic, residual);
-  input.adopted = {"clock"};
-  input.adopted_evidence = 200;
+  DecisionInput input = InputWithAdopted(synthetic, residual, "clock");
   input.refits.push_back({"drag", -3, synthetic.With(residual)});
   const Decision decision = Decide(input);
   EXPECT_EQ(decision.verdict, Verdict::kNuisance);
@@ -155,9 +158,7 @@ TEST(Decide, NamesEveryNuisanceOnce) {
 TEST(Decide, BelievesANaturalValueInPlaceOfAdoptedNuisances) {
   const SyntheticSpace synthetic;
   const Eigen::VectorXd noise = SyntheticSpace::Noise(16);
-  DecisionInput input = InputOf(synthetic, noise);
-  input.adopted = {"jitter"};
-  input.adopted_evidence = 200;
+  DecisionInput input = InputWithAdopted(synthetic, noise, "jitter");
   input.in_place_of_adopted.push_back({"gravity", 195, synthetic.With(noise)});
   EXPECT_THAT(Decide(input).names, ElementsAre("jitter"));
   input.natural_value["gravity"] = 10;
@@ -168,9 +169,8 @@ TEST(Decide, BelievesANaturalValueInPlaceOfAdoptedNuisances) {
 // Two rivals that share the nuisance of every model: an effect is missing, not the nuisance.
 TEST(Decide, DoesNotTakeASharedNuisanceForWhatIsMissing) {
   const SyntheticSpace alike(0.05);
-  DecisionInput input = InputOf(alike, SyntheticSpace::Noise(22) - 8 * alike.Of("drag"));
-  input.adopted = {"jitter"};
-  input.adopted_evidence = 200;
+  DecisionInput input =
+      InputWithAdopted(alike, SyntheticSpace::Noise(22) - 8 * alike.Of("drag"), "jitter");
   const Decision decision = Decide(input);
   EXPECT_EQ(decision.verdict, Verdict::kAmbiguous);
   EXPECT_THAT(decision.names, UnorderedElementsAre("drag", "mass_damping"));

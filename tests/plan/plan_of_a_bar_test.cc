@@ -16,6 +16,7 @@
 #include "diagnosis/recording_power.h"
 #include "plan/plan_run.h"
 #include "plan/planner.h"
+#include "plan/rivals.h"
 #include "prediction/played_recording.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"

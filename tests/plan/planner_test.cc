@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "plan/planned_bar.h"
+#include "plan/rivals.h"
 #include "report/plan_report.h"
 #include "support/silent_progress.h"
 
