@@ -5,9 +5,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <utility>
+
+#include "analysis/non_negative_minimum.h"
+#include "analysis/normal_distribution.h"
 
 namespace lacuna {
 namespace {
@@ -17,17 +19,126 @@ constexpr double kRounding = 1e-8;
 
 // The posterior information matrix of the chosen parameters, scaled to a unit diagonal.
 struct ScaledInformation {
+  // Its inverse times the columns.
+  Eigen::MatrixXd Solve(const Eigen::MatrixXd& columns) const {
+    return unit.asDiagonal() * factor.solve(unit.asDiagonal() * columns);
+  }
+
   Eigen::VectorXd unit;
   Eigen::LDLT<Eigen::MatrixXd> factor;
 };
 
-}  // namespace
-
-double LogTwiceNormal(double z) {
-  if (z > -30) return std::log(std::erfc(-z / std::sqrt(2.0)));
-  // An asymptotic series where erfc underflows.
-  return -0.5 * z * z - std::log(-z * std::sqrt(0.5 * std::numbers::pi));
+ScaledInformation Informed(const Eigen::MatrixXd& products, const std::vector<LinearPrior>& priors,
+                           const std::vector<int>& chosen, double variance) {
+  Eigen::MatrixXd information = products(chosen, chosen) / variance;
+  for (size_t i = 0; i < chosen.size(); ++i) {
+    const double deviation = priors[chosen[i]].deviation;
+    const Eigen::Index k = static_cast<Eigen::Index>(i);
+    if (std::isfinite(deviation)) information(k, k) += 1 / (deviation * deviation);
+    // Keeps the matrix regular for a parameter without influence and without prior.
+    information(k, k) = std::max(information(k, k), std::numeric_limits<double>::min());
+  }
+  ScaledInformation scaled;
+  scaled.unit = information.diagonal().cwiseSqrt().cwiseInverse();
+  scaled.factor.compute(scaled.unit.asDiagonal() * information * scaled.unit.asDiagonal());
+  return scaled;
 }
+
+// The normal posterior of the changes of these columns, the others being 0.
+struct Posterior {
+  ScaledInformation information;
+  Eigen::VectorXd right;  // the information matrix times the mean
+  Eigen::VectorXd mean;
+};
+
+Posterior PosteriorOf(const LinearGaussianModel& model, const std::vector<int>& columns,
+                      double variance) {
+  Posterior posterior;
+  posterior.information = Informed(model.products(), model.priors(), columns, variance);
+  posterior.right = -model.toward()(columns) / variance;
+  for (size_t k = 0; k < columns.size(); ++k) {
+    const LinearPrior& prior = model.Prior(columns[k]);
+    if (std::isfinite(prior.deviation))
+      posterior.right[static_cast<Eigen::Index>(k)] +=
+          prior.mean / (prior.deviation * prior.deviation);
+  }
+  posterior.mean = posterior.information.Solve(posterior.right);
+  return posterior;
+}
+
+// ‖r + A δ‖²
+double MisfitAt(const LinearGaussianModel& model, const std::vector<int>& columns,
+                const Eigen::VectorXd& change) {
+  return std::max(0.0, model.squares() + 2 * change.dot(model.toward()(columns)) +
+                           change.dot(model.products()(columns, columns) * change));
+}
+
+// The log evidence with the priors truncated at 0 where they must be positive. `all`: the posterior
+// of all chosen columns without a restriction; `deviation`: of its changes.
+double LogEvidence(const LinearGaussianModel& model, const std::vector<int>& chosen,
+                   double variance, const Posterior& all, const Eigen::VectorXd& deviation) {
+  double truncation = 0, prior_cost = 0, log_prior = 0;
+  for (size_t i = 0; i < chosen.size(); ++i) {
+    const LinearPrior& prior = model.Prior(chosen[i]);
+    const Eigen::Index k = static_cast<Eigen::Index>(i);
+    if (prior.positive && deviation[k] > 0)
+      truncation += LogTwiceNormal(all.mean[k] / deviation[k]);
+    if (!std::isfinite(prior.deviation)) continue;
+    prior_cost += std::pow((all.mean[k] - prior.mean) / prior.deviation, 2);
+    log_prior += std::log(prior.deviation);
+  }
+  const ScaledInformation& information = all.information;
+  const double log_determinant = information.factor.vectorD().array().max(1e-300).log().sum() -
+                                 2 * information.unit.array().log().sum();
+  const double misfit = MisfitAt(model, chosen, all.mean);
+  return -0.5 * (misfit / variance + prior_cost) - 0.5 * log_determinant - log_prior + truncation;
+}
+
+// Places within a list of chosen columns.
+using Places = std::vector<Eigen::Index>;
+
+std::vector<int> ColumnsAt(const Places& places, const std::vector<int>& chosen) {
+  std::vector<int> columns;
+  for (const Eigen::Index place : places) columns.push_back(chosen[static_cast<size_t>(place)]);
+  return columns;
+}
+
+// The places of `count` columns but for `zeros`, which are in ascending order.
+Places PlacesBut(const Places& zeros, Eigen::Index count) {
+  Places free;
+  for (Eigen::Index place = 0; place < count; ++place)
+    if (!std::binary_search(zeros.begin(), zeros.end(), place)) free.push_back(place);
+  return free;
+}
+
+// The changes of the chosen columns where the posterior is densest among those that are not
+// negative where they must be positive. `all`: the posterior without that restriction.
+NonNegativeMinimum ModeOf(const LinearGaussianModel& model, const std::vector<int>& chosen,
+                          double variance, const Posterior& all) {
+  const Eigen::Index count = all.mean.size();
+  // Of half the square of the distance from the mean, in terms of the information matrix.
+  const auto minimize = [&](const Places& zeros) -> MinimumWithZeros {
+    if (zeros.empty()) return {all.mean, {}, -0.5 * all.right.dot(all.mean)};
+    const Places free = PlacesBut(zeros, count);
+    const std::vector<int> columns = ColumnsAt(free, chosen), held = ColumnsAt(zeros, chosen);
+    const Posterior posterior = PosteriorOf(model, columns, variance);
+    MinimumWithZeros minimum;
+    minimum.at = Eigen::VectorXd::Zero(count);
+    for (size_t k = 0; k < free.size(); ++k)
+      minimum.at[free[k]] = posterior.mean[static_cast<Eigen::Index>(k)];
+    const Eigen::VectorXd slopes =
+        model.products()(held, columns) * posterior.mean / variance - all.right(zeros);
+    minimum.slopes = slopes.cwiseProduct(all.information.unit(zeros));
+    minimum.value = -0.5 * posterior.right.dot(posterior.mean);
+    return minimum;
+  };
+  Places positive;
+  for (Eigen::Index place = 0; place < count; ++place)
+    if (model.Prior(chosen[static_cast<size_t>(place)]).positive) positive.push_back(place);
+  return MinimizeNonNegative(minimize, positive);
+}
+
+}  // namespace
 
 double LogMeanExp(const std::vector<double>& values) {
   const double largest = *std::max_element(values.begin(), values.end());
@@ -61,26 +172,6 @@ LinearGaussianModel::LinearGaussianModel(const Eigen::VectorXd& residual,
   for (const LinearPrior& prior : priors_) CHECK_GT(prior.deviation, 0);
 }
 
-namespace {
-
-ScaledInformation Informed(const Eigen::MatrixXd& products, const std::vector<LinearPrior>& priors,
-                           const std::vector<int>& chosen, double variance) {
-  Eigen::MatrixXd information = products(chosen, chosen) / variance;
-  for (size_t i = 0; i < chosen.size(); ++i) {
-    const double deviation = priors[chosen[i]].deviation;
-    const Eigen::Index k = static_cast<Eigen::Index>(i);
-    if (std::isfinite(deviation)) information(k, k) += 1 / (deviation * deviation);
-    // Keeps the matrix regular for a parameter without influence and without prior.
-    information(k, k) = std::max(information(k, k), std::numeric_limits<double>::min());
-  }
-  ScaledInformation scaled;
-  scaled.unit = information.diagonal().cwiseSqrt().cwiseInverse();
-  scaled.factor.compute(scaled.unit.asDiagonal() * information * scaled.unit.asDiagonal());
-  return scaled;
-}
-
-}  // namespace
-
 LinearGaussianModel LinearGaussianModel::FromProducts(double squares, Eigen::VectorXd toward,
                                                       Eigen::MatrixXd products,
                                                       std::vector<LinearPrior> priors) {
@@ -112,58 +203,17 @@ LinearFit LinearGaussianModel::FitAll(double variance) const {
 
 LinearFit LinearGaussianModel::Fit(const std::vector<int>& chosen, double variance) const {
   CHECK_GT(variance, 0);
+  const Eigen::Index count = static_cast<Eigen::Index>(chosen.size());
+  const Posterior all = PosteriorOf(*this, chosen, variance);
+  const Eigen::MatrixXd covariance = all.information.Solve(Eigen::MatrixXd::Identity(count, count));
   LinearFit fit;
-  std::vector<int> free = chosen;
-  double truncation = 0;  // change of the log-evidence by truncating priors at 0
-  bool first = true;
-  while (true) {
-    const Eigen::Index count = static_cast<Eigen::Index>(free.size());
-    const ScaledInformation information = Informed(products_, priors_, free, variance);
-    Eigen::VectorXd right = -toward_(free) / variance;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const LinearPrior& prior = priors_[free[k]];
-      if (std::isfinite(prior.deviation))
-        right[k] += prior.mean / (prior.deviation * prior.deviation);
-    }
-    const auto solve = [&](const Eigen::MatrixXd& columns) -> Eigen::MatrixXd {
-      return information.unit.asDiagonal() *
-             information.factor.solve(information.unit.asDiagonal() * columns);
-    };
-    const Eigen::VectorXd change = solve(right);
-    const Eigen::MatrixXd covariance = solve(Eigen::MatrixXd::Identity(count, count));
-    const double misfit = std::max(
-        0.0, squares_ + 2 * change.dot(toward_(free)) + change.dot(products_(free, free) * change));
-    if (first) {
-      first = false;
-      double prior_cost = 0, log_prior = 0;
-      for (Eigen::Index k = 0; k < count; ++k) {
-        const LinearPrior& prior = priors_[free[k]];
-        const double deviation = std::sqrt(std::max(0.0, covariance(k, k)));
-        if (prior.positive && deviation > 0) truncation += LogTwiceNormal(change[k] / deviation);
-        if (!std::isfinite(prior.deviation)) continue;
-        prior_cost += std::pow((change[k] - prior.mean) / prior.deviation, 2);
-        log_prior += std::log(prior.deviation);
-      }
-      const double log_determinant = information.factor.vectorD().array().max(1e-300).log().sum() -
-                                     2 * information.unit.array().log().sum();
-      fit.log_evidence =
-          -0.5 * (misfit / variance + prior_cost) - 0.5 * log_determinant - log_prior + truncation;
-      fit.change = Eigen::VectorXd::Zero(count);
-      fit.deviation = covariance.diagonal().cwiseMax(0).cwiseSqrt();
-    }
-    std::vector<int> kept;
-    for (Eigen::Index k = 0; k < count; ++k)
-      if (!priors_[free[k]].positive || change[k] >= 0) kept.push_back(free[k]);
-    if (kept.size() == free.size()) {
-      fit.misfit = misfit;
-      for (Eigen::Index k = 0; k < count; ++k) {
-        const auto place = std::find(chosen.begin(), chosen.end(), free[k]) - chosen.begin();
-        fit.change[place] = change[k];
-      }
-      return fit;
-    }
-    free = std::move(kept);
-  }
+  fit.deviation = covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  fit.log_evidence = LogEvidence(*this, chosen, variance, all, fit.deviation);
+  const NonNegativeMinimum mode = ModeOf(*this, chosen, variance, all);
+  fit.change = mode.at;
+  const Places free = PlacesBut(mode.zeros, count);
+  fit.misfit = MisfitAt(*this, ColumnsAt(free, chosen), mode.at(free));
+  return fit;
 }
 
 Eigen::MatrixXd LinearGaussianModel::Remaining(const std::vector<int>& taken,

@@ -23,10 +23,6 @@ struct LinearPrior {
   bool positive = false;                                       // restricts the change to δ ≥ 0
 };
 
-// ln(2 Φ(z)) with the standard normal distribution Φ: the factor by which a prior that is truncated
-// at 0 changes the evidence of an amount that is z standard deviations above 0.
-double LogTwiceNormal(double z);
-
 // The logarithm of the mean of exp(value): from the log Bayes factors of alternatives that are
 // equally probable, that of all of them together. There must be a value.
 double LogMeanExp(const std::vector<double>& values);
@@ -59,10 +55,11 @@ class LinearGaussianModel {
   LinearGaussianModel WithResidual(const Eigen::VectorXd& residual,
                                    const Eigen::MatrixXd& columns) const;
 
-  // Fits the chosen columns with noise of the given variance v > 0. A change whose prior requires
-  // it to be positive is set to 0 if its estimate is negative. The evidence then belongs to the
-  // prior truncated at 0; it is exact for one such parameter and approximate, treating the
-  // parameters independently, for several.
+  // Fits the chosen columns with noise of the given variance v > 0. The changes are those of least
+  // cost, in the equation above, among the ones that are not negative where their prior requires
+  // them to be positive. The evidence then belongs to the priors truncated at 0; it is exact for
+  // one such parameter and approximate, treating the parameters independently, for several. The
+  // deviations are those without the truncation.
   LinearFit Fit(const std::vector<int>& chosen, double variance) const;
   LinearFit FitAll(double variance) const;  // fits all columns
 

@@ -6,36 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
-#include "analysis/linear_evidence.h"
+#include "analysis/non_negative_minimum.h"
+#include "analysis/normal_distribution.h"
 #include "core/random_bits.h"
 
 namespace lacuna {
 namespace {
-
-// Below this Φ is taken from its asymptotic series, which has an error of 1e-10 there.
-constexpr double kTail = -20;
-
-// |z| Φ(z) / φ(z) for z < kTail.
-double TailSeries(double z) {
-  const double q = 1 / (z * z);
-  return 1 - q * (1 - 3 * q * (1 - 5 * q * (1 - 7 * q)));
-}
-
-// ln Φ(z)
-double LogNormal(double z) {
-  if (z > kTail) return LogTwiceNormal(z) - std::numbers::ln2;
-  return -0.5 * z * z - std::log(-z * std::sqrt(2 * std::numbers::pi)) + std::log(TailSeries(z));
-}
-
-// φ(z) / Φ(z): the derivative of ln Φ, and the mean of a standard normal number above −z.
-double InverseMillsRatio(double z) {
-  if (z <= kTail) return -z / TailSeries(z);
-  return std::exp(-0.5 * z * z) * std::sqrt(2 / std::numbers::pi) /
-         std::erfc(-z / std::numbers::sqrt2);
-}
 
 // A draw from the standard normal distribution truncated to values of at least `least` (Robert,
 // Simulation of truncated normal variables, Statistics and Computing 5, 1995).
@@ -143,12 +121,14 @@ class PositivePair {
       for (const double slack : {-8, 0, 8})
         ends.push_back(std::clamp(a_ + (slack * rest_ - b_) / correlation_, low, high));
     std::sort(ends.begin(), ends.end());
+    const auto relative = [&](double u) { return LogDensity(u) - peak_; };
+    constexpr int kParts = 3;  // of each interval, so that the rule leaves an error of about 1e-15
     double sum = 0;
     for (size_t k = 1; k < ends.size(); ++k) {
-      const double middle = 0.5 * (ends[k - 1] + ends[k]);
-      const auto relative = [&](double u) { return LogDensity(u) - peak_; };
-      sum +=
-          IntegralOfExp(ends[k - 1], middle, relative) + IntegralOfExp(middle, ends[k], relative);
+      if (ends[k] == ends[k - 1]) continue;
+      const double part = (ends[k] - ends[k - 1]) / kParts;
+      for (int j = 0; j < kParts; ++j)
+        sum += IntegralOfExp(ends[k - 1] + j * part, ends[k - 1] + (j + 1) * part, relative);
     }
     log_mass_ = std::log(sum);
     log_probability_ = peak_ + log_mass_ - 0.5 * std::log(2 * std::numbers::pi);
@@ -234,25 +214,19 @@ Eigen::VectorXd DrawPositive(const Eigen::VectorXd& mean, const Eigen::MatrixXd&
 
 Eigen::VectorXd PositiveMode(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
                              const std::vector<Eigen::Index>& positive) {
-  CHECK_LE(positive.size(), 10) << "all of their subsets are tried";
-  Eigen::VectorXd mode;
-  double least = std::numeric_limits<double>::infinity();
-  for (size_t subset = 0; subset < size_t{1} << positive.size(); ++subset) {
-    std::vector<Eigen::Index> zero;
-    for (size_t k = 0; k < positive.size(); ++k)
-      if ((subset >> k & 1) != 0) zero.push_back(positive[k]);
-    // The mode if these are 0, and how far it is from the mean: (x − m)ᵀ C⁻¹ (x − m).
-    const Eigen::VectorXd removed = mean(zero);
+  const auto minimize = [&](const std::vector<Eigen::Index>& zeros) {
+    // The least (x − m)ᵀ C⁻¹ (x − m) where these are 0.
+    const Eigen::VectorXd removed = mean(zeros);
     const Eigen::VectorXd multipliers =
-        Eigen::MatrixXd(covariance(zero, zero)).ldlt().solve(removed);
-    Eigen::VectorXd at = mean - covariance(Eigen::all, zero) * multipliers;
-    at(zero).setZero();
-    const double distance = removed.dot(multipliers);
-    if (distance >= least || (at(positive).array() < 0).any()) continue;
-    least = distance;
-    mode = std::move(at);
-  }
-  return mode;
+        Eigen::MatrixXd(covariance(zeros, zeros)).ldlt().solve(removed);
+    MinimumWithZeros minimum;
+    minimum.at = mean - covariance(Eigen::all, zeros) * multipliers;
+    minimum.at(zeros).setZero();
+    minimum.slopes = -multipliers.cwiseProduct(covariance.diagonal()(zeros).cwiseSqrt());
+    minimum.value = removed.dot(multipliers);
+    return minimum;
+  };
+  return MinimizeNonNegative(minimize, positive).at;
 }
 
 }  // namespace lacuna

@@ -15,7 +15,7 @@ namespace lacuna {
 
 // ln(2ⁿ P(x > 0)): the factor by which priors that are truncated at 0 change the evidence of n
 // amounts, which are independent in the prior and have the posterior N(m, C). For one amount it is
-// LogTwiceNormal(); for two its error is below 1e-9 (in the tails below 1e-9 of it). Of more, one
+// LogTwiceNormal(); for two its error is below 1e-12 (in the tails below 1e-12 of it). Of more, one
 // after another is conditioned on being positive, with the others taken to stay normal with the
 // moments that this leaves them, until two are left (Mendell & Elston, Biometrics 30, 1974): an
 // approximation. C must be regular.
@@ -26,7 +26,7 @@ double LogOrthantFactor(Eigen::VectorXd mean, Eigen::MatrixXd covariance);
 Eigen::VectorXd DrawPositive(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
                              uint64_t bits);
 
-// Where N(m, C) has its largest density under the restriction that these few of the amounts are not
+// Where N(m, C) has its largest density if the amounts of the indices `positive` must not be
 // negative. C must be regular.
 Eigen::VectorXd PositiveMode(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
                              const std::vector<Eigen::Index>& positive);

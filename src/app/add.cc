@@ -99,11 +99,11 @@ int RunAdd(const std::filesystem::path& run, const std::string& type, const Outp
 void AddAdd(CLI::App* app, OutputOptions* output, std::function<int()>* command) {
   CLI::App* add = app->add_subcommand("add", "Add one effect to a fitted model and fit it again");
   add->footer(
-      "Writes the experiment NAME+EFFECT.yaml beside RUN, whose experiment is called NAME, and "
-      "runs\n"
-      "it from RUN's fitted values. The errors before and after are reported for the fitted and\n"
-      "for the held-out frames. EFFECT is an effect of the catalogue or a user-defined law from\n"
-      "the experiment's `candidates`. An elasticity law replaces that of the model.");
+      "Writes the experiment NAME+EFFECT.yaml beside RUN, where NAME is the name of RUN's\n"
+      "experiment, and fits it, starting from RUN's fitted values. The errors before and after\n"
+      "are reported for the fitted and for the held-out frames. EFFECT is an effect of the\n"
+      "catalogue or a user-defined law from the experiment's `candidates`. An elasticity law\n"
+      "replaces that of the model.");
   auto run = std::make_shared<std::string>();
   auto effect = std::make_shared<std::string>();
   add->add_option("run", *run, "Folder of a finished `lacuna fit`")->required();

@@ -46,7 +46,7 @@ void PrintFiles(const ComparisonRecord& record, const std::string& run) {
       run);
   if (std::any_of(record.recordings.begin(), record.recordings.end(),
                   [](const auto& recording) { return recording.force && recording.force->usable; }))
-    fmt::print("  unexplained_force.csv  net force, torque, power and place over time\n");
+    fmt::print("  unexplained_force.csv  net force, torque, power and position over time\n");
   for (size_t r = 0; r < record.recordings.size(); ++r) {
     const ComparedRecording& recording = record.recordings[r];
     if (recording.field_frames == 0) continue;
@@ -62,9 +62,9 @@ ComparisonRecord StoredComparison(const std::filesystem::path& run) {
     throw InputError({file.string()}, "there is no such file; `lacuna compare` writes it");
   ComparisonRecord stored = ReadComparisonFile(file);
   if (!IsComparisonOf(HashFile(FinishedStage(run, "calibration") / "calibration.json"), file))
-    throw InputError(
-        {file.string()},
-        fmt::format("is of an earlier fit; `lacuna compare {}` makes a new one", run.string()));
+    throw InputError({file.string()},
+                     fmt::format("belongs to an earlier fit; `lacuna compare {}` makes a new one",
+                                 run.string()));
   return stored;
 }
 
@@ -82,7 +82,7 @@ int Compare(const CompareArguments& arguments, const OutputOptions& output) {
     std::filesystem::remove_all(folder / std::to_string(r));
   Progress progress(output.ForProgress());
   if (!arguments.files_only) CompareMotion(arguments.run, &progress, &comparison);
-  SaveComparison(comparison, arguments.run);
+  WriteComparison(comparison, arguments.run);
   if (output.json) PrintRecord(folder / "comparison.json");
   if (output.PrintsText()) {
     PrintReport(comparison.record, output.verbose);
@@ -102,7 +102,7 @@ void AddCompare(CLI::App* app, OutputOptions* output, std::function<int()>* comm
       "RUN is the folder of a finished `lacuna fit`. Fitted and held-out frames are reported\n"
       "separately; docs/prediction.md explains the terms. The model is run again to compute "
       "strain,\n"
-      "height, fields for ParaView and the force that it lacks.");
+      "height, fields for ParaView and the force that would make it follow the recording.");
   auto arguments = std::make_shared<CompareArguments>();
   compare->add_option("run", arguments->run, "Folder of the run, results/NAME")->required();
   CLI::Option* files_only = compare->add_flag(

@@ -38,7 +38,7 @@ void RefuseMissing(const Counterparts& counterparts, const ExportFormat& format)
 // `size`: m, of the body.
 void PrintDifference(const char* what, const DisplacementDifference& difference, double size) {
   if (!difference.IsDisplaced(size)) {
-    fmt::print("  {:<12} nothing is displaced in Lacuna; largest difference {:.2g} mm\n", what,
+    fmt::print("  {:<12} nothing moves in Lacuna; largest difference {:.2g} mm\n", what,
                1e3 * difference.largest_difference);
     return;
   }
@@ -53,7 +53,7 @@ int Verify(const DescribedRun& run, const std::filesystem::path& output) {
   const CalculixResult result =
       RunCalculix(output / "model.inp", output / "calculix", model.mesh.NodeCount(), model.frames);
   if (result.status == CalculixResult::Status::kAbsent) {
-    fmt::print("Not verified: ccx is absent (Debian package calculix-ccx).\n");
+    fmt::print("Not verified: ccx is not installed (Debian package calculix-ccx).\n");
     return 0;
   }
   if (!result.IsUsable()) {
@@ -80,7 +80,7 @@ int Verify(const DescribedRun& run, const std::filesystem::path& output) {
 int Export(const ExportArguments& arguments) {
   const ExportFormat& format = FindExportFormat(arguments.format);
   if (arguments.verify && !IsVerifiable(format))
-    throw InputError("--verify runs CalculiX and belongs to --to inp and --to inp_lumped");
+    throw InputError("--verify runs CalculiX and needs --to inp or --to inp_lumped");
   const DescribedRun run = DescribeRun(arguments.run, arguments.described);
   const Counterparts counterparts = format.counterparts(run.model);
   if (!arguments.allow_missing) RefuseMissing(counterparts, format);
@@ -103,10 +103,11 @@ int Export(const ExportArguments& arguments) {
 
 void AddExport(CLI::App* app, std::function<int()>* command) {
   CLI::App* exported =
-      app->add_subcommand("export", "Write a fitted model into the format of another program");
+      app->add_subcommand("export", "Write a fitted model in the format of another program");
   exported->footer(
-      "RUN is the folder of a finished `lacuna fit`. What has no counterpart in the format is\n"
-      "listed and refused unless --allow-missing is given. docs/export.md has the formats.");
+      "RUN is the folder of a finished `lacuna fit`. If the format cannot express some parts of\n"
+      "the model, they are listed, and nothing is written unless --allow-missing is given.\n"
+      "docs/export.md describes the formats.");
   auto arguments = std::make_shared<ExportArguments>();
   exported->add_option("run", arguments->run, "Folder of the run, results/NAME")->required();
   std::string formats;

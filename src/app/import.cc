@@ -57,9 +57,9 @@ int Import(const ImportArguments& arguments) {
 
 void AddImport(CLI::App* app, std::function<int()>* command) {
   CLI::App* imported =
-      app->add_subcommand("import", "Begin an experiment from an input file of Abaqus or CalculiX");
+      app->add_subcommand("import", "Start an experiment from an Abaqus or CalculiX input file");
   imported->footer(
-      "Reads mesh, sets and isotropic elasticity; every keyword that is not read is listed.\n"
+      "Reads the mesh, the sets and isotropic elasticity; all other keywords are listed.\n"
       "docs/export.md describes the files that are written.");
   auto arguments = std::make_shared<ImportArguments>();
   imported->add_option("file", arguments->file, "The .inp file")->required();

@@ -88,7 +88,7 @@ void DescribeRun(const std::filesystem::path& folder) {
       fmt::print("{}", DiagnosisReport(ReadDiagnosisFile(diagnosis), fit, folder));
     else
       fmt::print(
-          "\n{} is of an earlier fit and is not shown; `lacuna diagnose {}` makes a new one\n",
+          "\n{} belongs to an earlier fit and is not shown; `lacuna diagnose {}` makes a new one\n",
           diagnosis.string(), folder.string());
     return;
   }

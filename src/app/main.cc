@@ -54,7 +54,7 @@ std::string UnexpectedArgument(const CLI::App& app, const std::vector<std::strin
     return fmt::format("unexpected argument \"{}\"; --help lists those that are known", given);
   const bool has_value = option->get_items_expected_min() > 0 && equals == std::string::npos;
   const std::string value = !has_value ? "" : remaining.size() > 1 ? " " + remaining[1] : " VALUE";
-  return fmt::format("\"{0}\" stands before the command: lacuna {0}{1} {2} ...", given, value,
+  return fmt::format("\"{0}\" must come before the command: lacuna {0}{1} {2} ...", given, value,
                      app.get_subcommands().front()->get_name());
 }
 
@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
   app.allow_extras();  // reported below, with a suggestion
   int threads = 0;
   lacuna::OutputOptions output;
-  app.add_option("--threads", threads, "Threads to use; results do not depend on it")
+  app.add_option("--threads", threads, "Number of threads; the results do not depend on it")
       ->check(CLI::Range(1, 1024));
   lacuna::AddMemoryLimitOption(&app);
   app.add_flag("-v,--verbose", output.verbose, "Log the progress of the stages in detail");

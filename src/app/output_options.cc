@@ -33,7 +33,7 @@ void AddPrintOptions(CLI::App* command, OutputOptions* output) {
 void AddOutputOptions(CLI::App* command, OutputOptions* output) {
   AddPrintOptions(command, output);
   command->add_flag_callback(
-      "--no-report", [output] { output->report = false; }, "Do not write the report's page");
+      "--no-report", [output] { output->report = false; }, "Do not write the HTML report");
 }
 
 void PrintWarnings(const OutputOptions& output, const std::vector<std::string>& warnings) {

@@ -40,12 +40,12 @@ int RunPlanCommand(const PlanArguments& arguments, const OutputOptions& output) 
 
 void AddPlan(CLI::App* app, OutputOptions* output, std::function<int()>* command) {
   CLI::App* plan = app->add_subcommand(
-      "plan", "Find the next recording that tells apart what a diagnosis has left open");
+      "plan", "Find the recording that best tells apart the effects that a diagnosis left open");
   plan->footer(
-      "RUN is the folder of a fitted and diagnosed run whose diagnosis has left several effects.\n"
-      "Variants of its recording, such as twice the pull, a turned clamp or an added mass, are\n"
-      "simulated with the fitted model; RUN/plan/plan.json says how often each would lead to the\n"
-      "right name, and how well the size of each effect would be known.");
+      "RUN is the folder of a run whose diagnosis has left several effects open. Variants of its\n"
+      "recording, such as twice the pull, a turned clamp or an added mass, are simulated with\n"
+      "the fitted model; RUN/plan/plan.json says how often each would lead to the right name,\n"
+      "and how well the size of each effect would be known.");
   auto arguments = std::make_shared<PlanArguments>();
   plan->add_option("run", arguments->run, "Folder of the run")->required();
   plan->add_option("--protocols", arguments->protocols,

@@ -25,9 +25,9 @@ void PrintProblem(std::string_view program, std::string_view message) {
 void AddMemoryLimitOption(CLI::App* app) {
   app->add_option_function<uint64_t>(
          "--memory-limit", [](uint64_t bytes) { SetMemoryLimit(bytes); },
-         "Refuse to begin what needs more memory than this, for example 4GB; for each process; "
-         "default: the machine's memory, or the limit of its container or control group if that is "
-         "lower")
+         "Refuse to start a computation that needs more memory than this, for example 4GB; the "
+         "limit applies to each process; default: the machine's memory, or the limit of its "
+         "container or control group if that is lower")
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
       ->check(CLI::Range(uint64_t{1'000'000}, uint64_t{1'000'000'000'000'000}));
 }

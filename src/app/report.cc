@@ -38,7 +38,7 @@ int Report(const ReportArguments& arguments, const OutputOptions& output) {
 
 void AddReport(CLI::App* app, OutputOptions* output, std::function<int()>* command) {
   CLI::App* report = app->add_subcommand(
-      "report", "Write what a run found as one HTML page, with the motion in 3D");
+      "report", "Write the results of a run as one HTML page, with the motion in 3D");
   report->footer(
       "RUN is the folder of a finished `lacuna fit`, `reconstruct`, `table1` or `ablation`, or of\n"
       "`lacuna-trials report` or `intervals`. The page needs nothing but a browser, and no\n"
@@ -48,7 +48,8 @@ void AddReport(CLI::App* app, OutputOptions* output, std::function<int()>* comma
   auto arguments = std::make_shared<ReportArguments>();
   report->add_option("run", arguments->runs, "Folders of the runs")->required();
   report->add_option("-o,--output", arguments->output,
-                     "The file to write (RUN/report.html; of several runs A_vs_B.html beside A)");
+                     "The file to write (default: RUN/report.html; for several runs "
+                     "A_vs_B.html, beside A)");
   report->add_flag("--json", output->json, "Print the numbers as JSON, and nothing else");
   report->add_flag("-q,--quiet", output->quiet, "Print nothing but errors");
   report->callback([=] { *command = [=] { return Report(*arguments, *output); }; });

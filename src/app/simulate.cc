@@ -12,11 +12,13 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/output_options.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file_name.h"
 #include "core/hash.h"
 #include "experiment/listed_regions.h"
+#include "experiment/model_reader.h"
 #include "experiment/scene.h"
 #include "geometry/mesh_io.h"
 #include "prediction/played_recording.h"
@@ -93,7 +95,7 @@ void WriteLoads(const SceneMotion& motion, const std::filesystem::path& folder) 
   for (Eigen::Index row = 0; row < motion.torques.rows(); ++row)
     table.push_back({fmt::format("grip_{}_torque_{}_N_m", row / 3 + 1, "xyz"[row % 3]),
                      motion.torques.row(row).head(frames)});
-  SaveCsv(table, folder / "loads.csv");
+  WriteCsv(table, folder / "loads.csv");
 }
 
 int SayEnded(const Arguments& arguments, const std::string& why) {
@@ -160,8 +162,8 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
   for (const PredictedRecording& item : study.recordings) {
     if (item.ShowsScans())
       throw InputError(SourcePosition{arguments.scene},
-                       fmt::format("recording {} shows scans; only recordings of markers can be "
-                                   "played",
+                       fmt::format("recording {} contains scans; only recordings of markers "
+                                   "can be simulated",
                                    item.name));
     if (!folders.insert(FileNameFor(item.name)).second)
       throw InputError(SourcePosition{arguments.scene},
@@ -212,8 +214,8 @@ int PlayExperiment(const Arguments& arguments, const Config& config) {
                                  "`noise` above 0");
     if (study.noise > 0 && !item.recording.markers.weights.empty())
       fmt::print(
-          "All its points have the errors of the experiment's `noise`; those that {} gives "
-          "for single points were not used\n",
+          "The simulated errors of all its points are those of the experiment's `noise`; the "
+          "values that {} gives for single points were not used\n",
           item.recording.file.string());
   }
   return 0;
@@ -224,8 +226,10 @@ int Simulate(const Arguments& arguments) {
   if (IsPredictionStudy(config)) return PlayExperiment(arguments, config);
   if (arguments.seed)
     throw InputError(SourcePosition{arguments.scene},
-                     "is a scene, whose `seed` stands in the file: leave out --seed");
+                     "is a scene, which has its `seed` in the file: leave out --seed");
   const Scene scene = ReadScene(config);
+  if (const std::string warning = AuxeticWarning(scene.effects); !warning.empty())
+    PrintWarnings(OutputOptions{}, {warning});
   if (!arguments.recording.empty() && !scene.scanner)
     throw InputError(SourcePosition{arguments.scene}, "has no `scanner`, which --recording needs");
   const std::filesystem::path output = OutputFolder(arguments, scene.name);
@@ -255,20 +259,21 @@ int Simulate(const Arguments& arguments) {
 void AddSimulate(CLI::App* app, std::function<int()>* command) {
   CLI::App* simulate = app->add_subcommand(
       "simulate",
-      "Simulate a synthetic scene or the recordings of an experiment, and record what it shows");
+      "Simulate a synthetic scene or an experiment, and optionally write recordings of the motion");
   simulate->footer(
-      "Of a scene, --recording writes the scans of virtual cameras. Of an experiment with\n"
-      "`recordings`, each recording is played with the model as the experiment gives it, and\n"
-      "--recording writes what its markers would show.");
+      "For a scene, --recording writes the scans of virtual cameras. For an experiment with\n"
+      "`recordings`, each of them is simulated with the model and the parameters of the\n"
+      "experiment file, and --recording writes the motion of the markers.");
   auto arguments = std::make_shared<Arguments>();
   simulate->add_option("scene", arguments->scene, "The YAML file of the scene or the experiment")
       ->required();
   simulate->add_option("-o,--output", arguments->output,
                        "Folder for the trajectory (default: results/<name>_simulation)");
   simulate->add_option("--recording", arguments->recording,
-                       "Folder for a recording like any other, which `reconstruct` or `fit` reads");
+                       "Folder for a recording, which `reconstruct` or `fit` can read");
   simulate->add_option("--seed", arguments->seed,
-                       "For other measurement errors of an experiment's recordings (default: 0)");
+                       "Seed of the measurement errors in the recordings of an experiment "
+                       "(default: 0)");
   simulate->callback(
       [command, arguments] { *command = [arguments] { return Simulate(*arguments); }; });
 }

@@ -83,7 +83,7 @@ int Run(const Arguments& arguments) {
 
 int Collect(const Arguments& arguments) {
   const SweepTable table = CollectSweep(arguments.folder);
-  SaveTable(table, arguments.folder);
+  WriteTable(table, arguments.folder);
   fmt::print("{}The table was written to {}: table.txt, table.csv, table.json\n",
              TableInWords(table), arguments.folder);
   return 0;
@@ -125,7 +125,7 @@ void AddSweep(CLI::App* app, std::function<int()>* command) {
   run->add_flag("--retry-failed", arguments->retry_failed, "Run failed cases again");
   run->add_flag("--wait", arguments->wait, "slurm: wait until the job has ended");
   run->add_option("--sbatch", arguments->sbatch,
-                  "slurm: a further option for sbatch, as --sbatch=--time=60")
+                  "slurm: a further option for sbatch, such as --sbatch=--time=60")
       ->allow_extra_args(false);
   run->callback(becomes(&Run));
 

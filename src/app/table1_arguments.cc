@@ -14,7 +14,8 @@ void AddTable1Arguments(CLI::App* command, Table1Arguments* arguments) {
                       fmt::format("Folder of the results ({})", options.output.string()));
   command
       ->add_option("--seeds", options.seeds,
-                   "How often to repeat the searches, each with other scans, starts and meshes")
+                   "Number of repetitions of the searches, each with different scans, starting "
+                   "points and meshes")
       ->check(CLI::Range(1, 1000));
   command
       ->add_option("--turns", options.turns,

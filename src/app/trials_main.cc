@@ -22,7 +22,7 @@ namespace {
 
 void Report(const std::filesystem::path& folder) {
   const TrialReport report = ReportTrials(folder);
-  SaveTrialReport(report, folder);
+  WriteTrialReport(report, folder);
   fmt::print("{}", ReportInWords(report));
 }
 
@@ -42,15 +42,15 @@ bool Intervals(const std::filesystem::path& suite, const std::filesystem::path& 
   const bool done = RunIntervalSuite(ReadIntervalSuite(Config::Load(suite)), folder, workers);
   if (!done) return false;
   const IntervalReport report = ReportIntervals(folder);
-  SaveIntervalReport(report, folder);
+  WriteIntervalReport(report, folder);
   fmt::print("{}", IntervalReportInWords(report));
   return true;
 }
 
 int Main(int argc, char** argv) {
   CLI::App app(
-      "Sealed cases test the diagnosis on recordings simulated with an effect that the model "
-      "lacks");
+      "Tests the diagnosis on sealed cases: recordings simulated with an effect that the model "
+      "lacks and that is hidden from the diagnosis");
   app.footer(
       "Exit status: 0 done; 1 the process of a case has failed; 2 unusable input;\n"
       "130 stopped by Ctrl-C (run the same command again to resume).");
@@ -64,20 +64,23 @@ int Main(int argc, char** argv) {
   CLI::App* run = app.add_subcommand("run", "Diagnose the cases that have no outcome yet");
   run->add_option("folder", folder, "Folder of the cases")->required();
   CLI::App* follow = app.add_subcommand(
-      "follow", "Make the next recording that a plan proposes for each case left open");
+      "follow",
+      "For each case left open, simulate the recording that the plan proposes, and diagnose again");
   follow->add_option("folder", folder, "Folder of the cases")->required();
   CLI::App* redecide = app.add_subcommand(
-      "redecide", "Decide again with the rules as they are now, from the stored evidence");
+      "redecide", "Apply the present decision rules to the stored evidence, and report");
   redecide->add_option("folder", folder, "Folder of the cases")->required();
   CLI::App* report = app.add_subcommand("report", "Report how often the diagnosis was right");
   report->add_option("folder", folder, "Folder of the cases")->required();
-  CLI::App* intervals =
-      app.add_subcommand("intervals", "Count how often the intervals of a fit contain the truth");
+  CLI::App* intervals = app.add_subcommand(
+      "intervals", "Count how often the intervals of a fit contain the true values");
   intervals->add_option("suite", suite, "The suite's YAML file, experiments/trials/intervals*.yaml")
       ->required();
-  intervals->add_option("folder", folder, "Folder for the draws")->required();
+  intervals->add_option("folder", folder, "Folder for the random draws")->required();
   for (CLI::App* command : {make, run, follow, intervals})
-    command->add_option("--workers", workers, "Number of processes that run at the same time")
+    command
+        ->add_option("--workers", workers,
+                     "Number of processes to run at the same time (default: 2)")
         ->check(CLI::Range(1, 64));
   AddDocumentOption(&app);
   if (const std::optional<int> ended = ParseCommandLine(&app, argc, argv)) return *ended;

@@ -107,7 +107,7 @@ AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study, 
     StepCheck check;
     {
       const CalibrationProblem problem(*study, mesh);
-      const bool goes_on = !fit.calibration.estimates.empty();
+      const bool goes_on = fit.calibration.HasSolution();
       const bool has_begun = tried == 1 && beginning.parameters.size() > 0;
       fit.calibration =
           goes_on ? RefineFit(problem, fit.calibration.parameters, progress, &spent, kept)
@@ -117,7 +117,7 @@ AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study, 
       fit.calibration.predictions = predictions;
       fit.calibration.start_rms = start_rms;
       if (!study->chooses_time_step) return fit;
-      if (!fit.calibration.estimates.empty()) {
+      if (fit.calibration.HasSolution()) {
         check = CheckStep(problem, fit.calibration.parameters, &spent, progress);
         fit.step_error = check.error;
         if (check.Share() == 1) return fit;
@@ -126,7 +126,7 @@ AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study, 
       further.time_step *= check.Share();
       const bool is_out_of_steps = tried == kMostSteps;
       if (is_out_of_steps || spent.IsUsedUp(further.time_step)) {
-        if (!fit.calibration.estimates.empty())
+        if (fit.calibration.HasSolution())
           fit.note = NoteOn(check, study->time_step, is_out_of_steps);
         return fit;
       }

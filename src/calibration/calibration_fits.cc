@@ -204,7 +204,7 @@ class Fitter {
     for (double factor = far.reach_factor; factor > 1; factor /= kReachStep) {
       memory_.reach_factor = factor;
       const Calibration round = FitOnce(horizon, values, {.max_iterations = kIterationsWhileFar});
-      if (!round.estimates.empty()) values = round.parameters;
+      if (round.HasSolution()) values = round.parameters;
       if (IsOutOfBudget()) break;
     }
     memory_.reach_factor = 1;
@@ -218,7 +218,7 @@ class Fitter {
     for (int iterations = 0; iterations < most;) {
       calibration = FitOnce(horizon, values,
                             {.max_iterations = std::min(kIterationsOfRound, most - iterations)});
-      if (calibration.estimates.empty() || (calibration.is_out_of_budget && IsOutOfBudget()))
+      if (!calibration.HasSolution() || (calibration.is_out_of_budget && IsOutOfBudget()))
         return calibration;
       const double moved = LargestChange(problem_.parameters(), calibration, values);
       values = calibration.parameters;
@@ -311,7 +311,7 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
     if (other == start || fitter.IsOutOfBudget()) break;
     Calibration first = fitter.Beginning(
         fmt::format("fit, moduli from {:g} times their start values", factor), other);
-    const double rms = first.estimates.empty() ? kUnlimited : fitter.RmsAt(first.parameters);
+    const double rms = first.HasSolution() ? fitter.RmsAt(first.parameters) : kUnlimited;
     if (rms >= least) continue;
     least = rms;
     nearest = std::move(first);

@@ -8,6 +8,7 @@
 #define LACUNA_CALIBRATION_CALIBRATION_PROBLEM_H_
 
 #include <Eigen/Core>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -61,6 +62,8 @@ struct LineariseOptions {
   // The misfit of a similar model on the same mesh, from whose equilibria the search for those here
   // starts; null or not usable: from the rest shape.
   const LinearisedMisfit* near = nullptr;
+  // Called whenever a frame has been predicted, by several threads at once; empty: it is not.
+  std::function<void()> on_frame = {};
 };
 
 // A fit whose rms residual exceeds this many σ may have ended in a local minimum; other starts are

@@ -27,7 +27,8 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
   std::vector<MisfitDirection> wanted;
   if (options.with_jacobian) wanted = DirectionsFor(model, options.directions);
   wanted.push_back({MisfitDirection::Kind::kClock});
-  Misfit misfit = model.Predict(item.frames, NuisanceOf(recording, values), wanted, hints);
+  Misfit misfit =
+      model.Predict(item.frames, NuisanceOf(recording, values), wanted, hints, options.on_frame);
   LinearisedRecording linearised;
   if (!misfit.summary.IsUsable()) {
     linearised.message = item.name + ": " + misfit.summary.message;

@@ -24,7 +24,7 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage, or its files.
-constexpr int kCalibrationVersion = 34;
+constexpr int kCalibrationVersion = 35;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
@@ -157,7 +157,7 @@ CalibrationStage FitAndDescribe(PredictionStudy study, const ReferenceBody& refe
   for (size_t r = 0; r < misfits.size(); ++r)
     record.recordings.push_back(
         DescribeRecording(problem.models()[r], misfits[r], problem.scan_noise()));
-  record.prior_conflicts = FindPriorConflicts(problem, misfits);
+  record.prior_conflicts = FindPriorConflicts(problem, values, misfits);
   const std::vector<std::string> stops = NotesOnStops(problem, misfits);
   record.notes.insert(record.notes.end(), stops.begin(), stops.end());
   stage.misfit = MisfitTable(problem, misfits);
@@ -168,7 +168,7 @@ CalibrationStage FitAndDescribe(PredictionStudy study, const ReferenceBody& refe
   progress->End();
   if (record.rms <= kFarFromTruth) {
     progress->Begin("errors of the model", 0);
-    const KnownErrors errors = FindKnownErrors(problem, values);
+    const KnownErrors errors = FindKnownErrors(problem, values, progress);
     CountKnownErrors(problem, errors, &record);
     stage.other_mesh = errors.other_mesh;
     progress->End();
@@ -217,10 +217,10 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
       [&] { return FitAndDescribe(study, reference, progress, &kept); },
       [](const CalibrationStage& value, const std::filesystem::path& folder) {
         WriteCalibrationFile(value.record, folder / "calibration.json");
-        if (!value.misfit.empty()) SaveCsv(value.misfit, folder / "misfit.csv");
-        if (!value.reactions.empty()) SaveCsv(value.reactions, folder / "reactions.csv");
-        if (!value.torques.empty()) SaveCsv(value.torques, folder / "torques.csv");
-        if (value.other_mesh) SaveOtherMesh(*value.other_mesh, folder);
+        if (!value.misfit.empty()) WriteCsv(value.misfit, folder / "misfit.csv");
+        if (!value.reactions.empty()) WriteCsv(value.reactions, folder / "reactions.csv");
+        if (!value.torques.empty()) WriteCsv(value.torques, folder / "torques.csv");
+        if (value.other_mesh) WriteOtherMesh(*value.other_mesh, folder);
       },
       [](const std::filesystem::path& folder) {
         return CalibrationStage{ReadCalibrationFile(folder / "calibration.json"), {}, {}, {}, {}};

@@ -95,9 +95,9 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
                                                 recording.misfit.points, errors, tells_places,
                                                 recording.misfit.deformation);
   for (size_t k = 0; k < recording.misfit.reactions.size(); ++k)
-    recording.reactions.push_back(MeasureReaction(model.Reactions()[k],
-                                                  recording.misfit.reactions[k], times,
-                                                  recording.fitted, tells_places));
+    recording.reactions.push_back(
+        MeasureReaction(model.Reactions()[k], recording.misfit.reactions[k], times,
+                        recording.fitted, tells_places, !item.recording.object.forces.empty()));
   recording.in_fit = Measure(recording, true, errors.noise);
   recording.held_out = Measure(recording, false, errors.noise);
   return recording;

@@ -1,6 +1,9 @@
 #include "calibration/known_errors.h"
 
+#include <atomic>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -13,12 +16,16 @@
 
 namespace lacuna {
 
-KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
+KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                            Progress* progress) {
+  std::atomic<int64_t> frames = 0;
+  const std::function<void()> on_frame = [&] { progress->Report(++frames); };
   KnownErrors errors;
   errors.at_limit = values;
   errors.deviation = Eigen::VectorXd::Zero(values.size());
   const std::vector<CalibratedParameter>& parameters = problem.parameters();
-  const LinearisedMisfit misfit = problem.Linearise(values, {.with_jacobian = true});
+  const LinearisedMisfit misfit =
+      problem.Linearise(values, {.with_jacobian = true, .on_frame = on_frame});
   if (!misfit.usable) {
     errors.notes.push_back(
         "the intervals do not contain the errors of the mesh, of the time step and of the object's "
@@ -39,9 +46,9 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
   std::optional<StepErrors> step;
   Eigen::MatrixXd by_size;
   ForEachStudy(problem, 3, [&](int64_t k) {
-    if (k == 0) mesh = MakeOtherMesh(problem, values, misfit);
-    if (k == 1) step = FindStepErrors(problem, values, misfit);
-    if (k == 2) by_size = ChangesBySize(problem, values, misfit);
+    if (k == 0) mesh = MakeOtherMesh(problem, values, misfit, /*known=*/nullptr, on_frame);
+    if (k == 1) step = FindStepErrors(problem, values, misfit, on_frame);
+    if (k == 2) by_size = ChangesBySize(problem, values, misfit, on_frame);
   });
   Eigen::VectorXd to_limit = Eigen::VectorXd::Zero(values.size());
   if (mesh) {

@@ -18,6 +18,7 @@
 
 #include "calibration/calibration_problem.h"
 #include "calibration/mesh_limit.h"
+#include "core/progress.h"
 
 namespace lacuna {
 
@@ -39,8 +40,10 @@ struct KnownErrors {
   std::vector<std::string> notes;
 };
 
-// `values`: the fitted ones. Throws Interrupted.
-KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::VectorXd& values);
+// `values`: the fitted ones. Reports the frames that have been predicted to the current stage of
+// `progress`; how many there will be is not known in advance. Throws Interrupted.
+KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                            Progress* progress);
 
 }  // namespace lacuna
 

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-// The files of SaveOtherMesh().
+// The files of WriteOtherMesh().
 constexpr const char* kDescription = "other_mesh.json";
 constexpr const char* kResiduals = "other_mesh.npy";
 
@@ -146,13 +146,16 @@ namespace {
 // Finds the parameters with which another mesh moves like the study's own.
 class ChangeSearch {
  public:
-  // `own`: the residual of the study's mesh. All references must outlive this.
+  // `own`: the residual of the study's mesh. `on_frame`: LineariseOptions::on_frame of the
+  // predictions. All references must outlive this.
   ChangeSearch(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-               const LinearisedMisfit& misfit, const Eigen::VectorXd& own)
+               const LinearisedMisfit& misfit, const Eigen::VectorXd& own,
+               const std::function<void()>& on_frame)
       : parameters_(problem.parameters()),
         values_(values),
         misfit_(misfit),
         own_(own),
+        on_frame_(on_frame),
         by_(WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit)),
         prior_(PriorOfChange(problem, values)),
         model_(Eigen::VectorXd::Zero(by_.rows()), by_, prior_.priors) {}
@@ -201,8 +204,8 @@ class ChangeSearch {
   };
   Tried At(const CalibrationProblem& other, const Eigen::VectorXd& change,
            LinearisedMisfit* latest) const {
-    LinearisedMisfit here =
-        other.Linearise(MovedBy(parameters_, values_, change), {.near = latest});
+    LinearisedMisfit here = other.Linearise(MovedBy(parameters_, values_, change),
+                                            {.near = latest, .on_frame = on_frame_});
     Tried tried = Compared(here.residual);
     if (here.usable) *latest = std::move(here);
     return tried;
@@ -220,6 +223,7 @@ class ChangeSearch {
   const Eigen::VectorXd& values_;
   const LinearisedMisfit& misfit_;
   const Eigen::VectorXd& own_;
+  const std::function<void()>& on_frame_;
   const Eigen::MatrixXd by_;
   const ChangePrior prior_;
   const LinearGaussianModel model_;
@@ -235,15 +239,18 @@ bool IsSame(const Eigen::VectorXd& one, const Eigen::VectorXd& other) {
 
 std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
-                                       const LinearisedMisfit& misfit, const OtherMesh* known) {
+                                       const LinearisedMisfit& misfit, const OtherMesh* known,
+                                       const std::function<void()>& on_frame) {
   const PredictionStudy study = WithLongSteps(problem);
   const TetMesh& own = problem.body()->mesh;
   const double ratio = RatioFor(problem, misfit);
   const auto other = WithOtherElements(study, own, ratio);
   if (!other) return std::nullopt;
   OtherMesh mesh{other->ratio, Eigen::VectorXd::Zero(values.size()), {}, {}};
-  mesh.own = CalibrationProblem(study, own).Linearise(values, {.near = &misfit}).residual;
-  const ChangeSearch search(problem, values, misfit, mesh.own);
+  mesh.own = CalibrationProblem(study, own)
+                 .Linearise(values, {.near = &misfit, .on_frame = on_frame})
+                 .residual;
+  const ChangeSearch search(problem, values, misfit, mesh.own, on_frame);
   bool is_simulated = false;
   if (known != nullptr) {
     is_simulated = known->ratio == mesh.ratio && IsSame(known->own, mesh.own);
@@ -264,7 +271,7 @@ std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
   return mesh;
 }
 
-void SaveOtherMesh(const OtherMesh& mesh, const std::filesystem::path& folder) {
+void WriteOtherMesh(const OtherMesh& mesh, const std::filesystem::path& folder) {
   const json description = {
       {"ratio", mesh.ratio},
       {"change", std::vector<double>(mesh.change.begin(), mesh.change.end())}};

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -45,16 +46,17 @@ struct OtherMesh {
 // `misfit` is that at `values`, with its Jacobian. The motions are compared in all frames of the
 // fitted recordings. `known`: what was found at these values or near them; where the study's mesh
 // moves as it did then, the other one is not simulated again at that change. Null: nothing is
-// known. Returns nothing where another mesh cannot be made (calibration/other_elements.h) or cannot
-// be simulated. Throws Interrupted.
+// known. `on_frame` is LineariseOptions::on_frame of the predictions. Returns nothing where another
+// mesh cannot be made (calibration/other_elements.h) or cannot be simulated. Throws Interrupted.
 std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit,
-                                       const OtherMesh* known = nullptr);
+                                       const OtherMesh* known = nullptr,
+                                       const std::function<void()>& on_frame = {});
 
 // Writes other_mesh.json and other_mesh.npy into a folder, and reads them; nothing where the folder
 // has no such files. Both throw InputError naming the file.
-void SaveOtherMesh(const OtherMesh& mesh, const std::filesystem::path& folder);
+void WriteOtherMesh(const OtherMesh& mesh, const std::filesystem::path& folder);
 std::optional<OtherMesh> ReadOtherMesh(const std::filesystem::path& folder);
 
 // The residual with elements whose volume is smaller by `ratio`, with the longer steps and the

@@ -33,6 +33,24 @@ double LongestOffset(int components, Eigen::Index points) {
   return longer;
 }
 
+// A fit is silently wrong, with narrow intervals, where the truth lies far outside of the range on
+// a card from which a parameter has its prior.
+void AddModelConflicts(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                       std::vector<PriorConflict>* conflicts) {
+  const std::vector<ModelParameter>& fitted = problem.study().fitted;
+  for (size_t k = 0; k < fitted.size(); ++k) {
+    const CalibratedParameter& prior = fitted[k].prior;
+    const double mean = PriorMeanOf(prior);
+    const double change = ToFree(prior, values[static_cast<Eigen::Index>(k)]) - ToFree(prior, mean);
+    const double deviations = std::abs(change) / prior.prior_deviation;
+    // A prior that the experiment gives has a mean (prediction_study_reader.cc).
+    const bool is_default = std::isnan(prior.prior_mean);
+    if (deviations > kConflict)
+      conflicts->emplace_back(
+          ModelParameterConflict{prior.name, fitted[k].unit, deviations, mean, is_default});
+  }
+}
+
 void AddNuisanceConflicts(const RecordingModel& model, const RecordingMisfit& misfit,
                           std::vector<PriorConflict>* conflicts) {
   const auto& own = model.nuisances();
@@ -101,8 +119,10 @@ void AddScanConflicts(const ScanSettings& scan, const RecordingMisfit& misfit,
 }  // namespace
 
 std::vector<PriorConflict> FindPriorConflicts(const CalibrationProblem& problem,
+                                              const Eigen::VectorXd& values,
                                               const std::vector<RecordingMisfit>& misfits) {
   std::vector<PriorConflict> conflicts;
+  AddModelConflicts(problem, values, &conflicts);
   const PredictionStudy& study = problem.study();
   for (size_t r = 0; r < misfits.size(); ++r) {
     const RecordingModel& model = problem.models()[r];

@@ -36,7 +36,7 @@ ReactionMeasure MeasureOver(const Eigen::VectorXd& residual, const ReactionMisfi
 
 FittedReaction MeasureReaction(const MeasuredReaction& reading, const ReactionMisfit& misfit,
                                const std::vector<double>& times, const std::vector<char>& fitted,
-                               const std::vector<char>& tells_tare) {
+                               const std::vector<char>& tells_tare, bool forces_are_known) {
   FittedReaction reaction;
   reaction.name = reading.name;
   reaction.labels = reading.labels;
@@ -54,7 +54,7 @@ FittedReaction MeasureReaction(const MeasuredReaction& reading, const ReactionMi
   reaction.held_out = MeasureOver(residual, misfit, fitted, false, reading.deviation);
   if (std::max(reaction.in_fit.rms, reaction.held_out.rms) >
       kConsiderableReactionError * reaction.largest_reading)
-    reaction.likely_mistakes = FindReadingMistakes(reading, misfit, times);
+    reaction.likely_mistakes = FindReadingMistakes(reading, misfit, times, forces_are_known);
   return reaction;
 }
 

@@ -11,10 +11,11 @@ namespace lacuna {
 
 // The errors of one reading without its tare, which is determined from the frames `tells_tare`.
 // The lists have one entry per frame of the misfit: its time, s, and flags. Where the rms error
-// exceeds kConsiderableReactionError, mistakes in the reading are looked for (reading_mistakes.h).
+// exceeds kConsiderableReactionError, mistakes in the reading are looked for (reading_mistakes.h,
+// which says what `forces_are_known` means).
 FittedReaction MeasureReaction(const MeasuredReaction& reading, const ReactionMisfit& misfit,
                                const std::vector<double>& times, const std::vector<char>& fitted,
-                               const std::vector<char>& tells_tare);
+                               const std::vector<char>& tells_tare, bool forces_are_known);
 
 }  // namespace lacuna
 

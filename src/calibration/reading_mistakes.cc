@@ -7,6 +7,8 @@ namespace lacuna {
 namespace {
 
 constexpr double kExplained = 0.05;  // of the squared misfit, is left by a likely mistake
+// A factor up to this, or down to its inverse, may be an error of the model: units differ by more.
+constexpr double kOfModel = 1.25;
 
 // Predictions and readings of one component in the frames that have both.
 struct Series {
@@ -71,8 +73,14 @@ double SquaredMisfit(const std::vector<Series>& components) {
   return sum;
 }
 
-// The largest offset where each component has one; nothing where they explain too little.
-std::optional<double> FindOffset(const std::vector<Series>& components, double most) {
+bool IsNearOne(double factor) { return factor <= kOfModel && factor >= 1 / kOfModel; }
+
+struct OffsetFit {
+  double factor = 0;
+  double offset = 0;  // the largest where each component has one
+};
+// Nothing where an offset of each component beside a joint factor explains too little.
+std::optional<OffsetFit> FindOffset(const std::vector<Series>& components, double most) {
   std::vector<Series> centred = components;
   for (Series& series : centred) {
     if (series.read.empty()) continue;
@@ -81,17 +89,18 @@ std::optional<double> FindOffset(const std::vector<Series>& components, double m
   }
   const FactorFit fit = FitFactor(centred);
   if (!(fit.remains <= most) || fit.factor <= 0) return std::nullopt;
-  double largest = 0;
+  OffsetFit found{fit.factor};
   for (const Series& series : components) {
     if (series.read.empty()) continue;
     const double offset = Mean(series.read) - fit.factor * Mean(series.predicted);
-    if (std::abs(offset) > std::abs(largest)) largest = offset;
+    if (std::abs(offset) > std::abs(found.offset)) found.offset = offset;
   }
-  return largest;
+  return found;
 }
 
 std::optional<double> FindDelay(const MeasuredReaction& reading, const ReactionMisfit& misfit,
-                                const std::vector<double>& times, size_t count, double most) {
+                                const std::vector<double>& times, size_t count, double most,
+                                bool forces_are_known) {
   constexpr int kSteps = 40;           // on either side
   constexpr double kFarthest = 0.25;   // of the time of all frames
   constexpr double kFewestRows = 0.6;  // that a delayed reading must cover
@@ -104,6 +113,7 @@ std::optional<double> FindDelay(const MeasuredReaction& reading, const ReactionM
     const FactorFit fit = FitFactor(delayed);
     const double remains = fit.remains * all / rows;
     if (!(remains <= most) || fit.factor <= 0) continue;
+    if (forces_are_known && !IsNearOne(fit.factor)) continue;
     most = remains;
     best = k * step;
   }
@@ -113,7 +123,7 @@ std::optional<double> FindDelay(const MeasuredReaction& reading, const ReactionM
 }  // namespace
 
 ReadingMistakes FindReadingMistakes(const MeasuredReaction& reading, const ReactionMisfit& misfit,
-                                    const std::vector<double>& times) {
+                                    const std::vector<double>& times, bool forces_are_known) {
   ReadingMistakes mistakes;
   if (times.size() < 2) return mistakes;
   const std::vector<Series> components = SeriesOf(reading, misfit, times, 0);
@@ -123,8 +133,11 @@ ReadingMistakes FindReadingMistakes(const MeasuredReaction& reading, const React
     mistakes.factor = fit.factor;
     return mistakes;
   }
-  mistakes.offset = FindOffset(components, most);
-  mistakes.delay = FindDelay(reading, misfit, times, CountOf(components), most);
+  if (const std::optional<OffsetFit> found = FindOffset(components, most)) {
+    mistakes.offset = found->offset;
+    if (forces_are_known && !IsNearOne(found->factor)) mistakes.factor = found->factor;
+  }
+  mistakes.delay = FindDelay(reading, misfit, times, CountOf(components), most, forces_are_known);
   return mistakes;
 }
 

@@ -14,11 +14,13 @@ namespace lacuna {
 //   a f + b        an offset b of each component
 //   a f(t − d)     a delay d, up to a quarter of the time
 // each by least squares. The modulus has followed the wrong reading, so that a is free; this is
-// exact where forces are proportional to the modulus and the motion does not depend on it. A
-// mistake is likely if it leaves less than a twentieth of the squared misfit; the others are looked
-// for only where a factor alone does not. Nothing is found where the prediction is 0.
+// exact where forces are proportional to the modulus and the motion does not depend on it. Where
+// `forces_are_known` on the object, these and not the modulus determine the reading: a must then be
+// near 1, and an offset beside another factor is returned together with it. A mistake is likely if
+// it leaves less than a twentieth of the squared misfit; the others are looked for only where a
+// factor alone does not. Nothing is found where the prediction is 0.
 ReadingMistakes FindReadingMistakes(const MeasuredReaction& reading, const ReactionMisfit& misfit,
-                                    const std::vector<double>& times);
+                                    const std::vector<double>& times, bool forces_are_known);
 
 }  // namespace lacuna
 

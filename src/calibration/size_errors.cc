@@ -47,10 +47,11 @@ bool IsOf(const StretchedRecordings& group, size_t recording) {
 }
 
 // The misfit of a group of recordings with the mesh stretched along an axis; nothing where it
-// cannot be predicted. `listed`: the study with regions that keep their nodes.
+// cannot be predicted. `listed`: the study with regions that keep their nodes. `options`: of the
+// prediction.
 std::optional<LinearisedMisfit> LineariseStretched(
     const StretchedRecordings& group, Eigen::Index axis, const CalibrationProblem& problem,
-    const PredictionStudy& listed, const Eigen::VectorXd& values, const LinearisedMisfit& near) {
+    const PredictionStudy& listed, const Eigen::VectorXd& values, const LineariseOptions& options) {
   TetMesh larger = problem.body()->mesh;
   larger.nodes.row(axis).array() +=
       kProbe * listed.size_deviation * (larger.nodes.row(axis).array() - group.centre[axis]);
@@ -67,7 +68,7 @@ std::optional<LinearisedMisfit> LineariseStretched(
         CalibrationProblem(study, larger)
             .Linearise(Eigen::Map<const Eigen::VectorXd>(own.data(),
                                                          static_cast<Eigen::Index>(own.size())),
-                       {.near = &near});
+                       options);
     if (changed.usable) return changed;
   } catch (const InputError&) {
     // For example, a grip that follows a scan loses it with the larger object.
@@ -78,7 +79,8 @@ std::optional<LinearisedMisfit> LineariseStretched(
 }  // namespace
 
 Eigen::MatrixXd ChangesBySize(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                              const LinearisedMisfit& misfit) {
+                              const LinearisedMisfit& misfit,
+                              const std::function<void()>& on_frame) {
   const Eigen::MatrixXd none(misfit.residual.size(), 0);
   if (problem.study().size_deviation == 0) return none;
   const PredictionStudy listed = WithListedNodes(problem);
@@ -88,8 +90,8 @@ Eigen::MatrixXd ChangesBySize(const CalibrationProblem& problem, const Eigen::Ve
   const auto change = [&](int64_t k) {
     const StretchedRecordings& group = groups[static_cast<size_t>(k / 3)];
     const Eigen::Index axis = k % 3;
-    const std::optional<LinearisedMisfit> changed =
-        LineariseStretched(group, axis, problem, listed, values, misfit);
+    const std::optional<LinearisedMisfit> changed = LineariseStretched(
+        group, axis, problem, listed, values, {.near = &misfit, .on_frame = on_frame});
     if (!changed) return;
     auto own = changed->parts.begin();
     for (const LinearisedMisfit::Part& part : misfit.parts) {

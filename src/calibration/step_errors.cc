@@ -36,12 +36,13 @@ double LongestStep(const PredictionStudy& study) {
 
 std::optional<StepErrors> FindStepErrors(const CalibrationProblem& problem,
                                          const Eigen::VectorXd& values,
-                                         const LinearisedMisfit& misfit) {
+                                         const LinearisedMisfit& misfit,
+                                         const std::function<void()>& on_frame) {
   const auto with_steps = [&](double ratio) {
     PredictionStudy study = problem.WithEstimatedNoise();
     study.time_step = LongestStep(study) / ratio;
     return CalibrationProblem(study, problem.body()->mesh)
-        .Linearise(values, {.near = &misfit})
+        .Linearise(values, {.near = &misfit, .on_frame = on_frame})
         .residual;
   };
   const Eigen::VectorXd& whole = misfit.residual;

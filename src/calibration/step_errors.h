@@ -11,6 +11,7 @@
 #define LACUNA_CALIBRATION_STEP_ERRORS_H_
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 
 #include "calibration/calibration_problem.h"
@@ -32,11 +33,12 @@ struct StepErrors {
   Eigen::VectorXd Unknown() const { return kDepartureDeviation * departure; }
 };
 
-// `misfit` is that at `values`. Nothing if a prediction with a shorter step fails. Throws
-// Interrupted.
+// `misfit` is that at `values`; `on_frame` is LineariseOptions::on_frame of the predictions.
+// Nothing if a prediction with a shorter step fails. Throws Interrupted.
 std::optional<StepErrors> FindStepErrors(const CalibrationProblem& problem,
                                          const Eigen::VectorXd& values,
-                                         const LinearisedMisfit& misfit);
+                                         const LinearisedMisfit& misfit,
+                                         const std::function<void()>& on_frame = {});
 
 }  // namespace lacuna
 

@@ -110,7 +110,7 @@ std::string ForceTableRows(const ForceHistory& history, size_t recording) {
 
 }  // namespace
 
-void SaveComparison(const Comparison& comparison, const std::filesystem::path& run) {
+void WriteComparison(const Comparison& comparison, const std::filesystem::path& run) {
   const std::filesystem::path folder = run / "comparison";
   MakeFolder(folder);
   WriteFileAtomically(folder / "by_frame.csv", ErrorsByFrame(comparison));

@@ -14,7 +14,7 @@ namespace lacuna {
 //   unexplained_force.csv         force, torque, power and place over time; only if it was computed
 //   comparison.json               the record and its description in words; written last
 // Each file is complete or absent. Throws InputError when one cannot be written.
-void SaveComparison(const Comparison& comparison, const std::filesystem::path& run);
+void WriteComparison(const Comparison& comparison, const std::filesystem::path& run);
 
 }  // namespace lacuna
 

@@ -24,6 +24,10 @@ constexpr double kLargestWidth = kStandardGravity;  // m/s², upper limit of the
 // predictions.
 constexpr double kAgreement = 0.1;
 constexpr double kAgreementOverSigma = 0.5;
+// ... and if the step has not increased the error beyond the prediction by more than this share:
+// near the solution, where a step hardly changes it, the error may grow by the curvature alone.
+// Larger: a step that makes matters worse may end the search.
+constexpr double kSameError = 0.01;
 constexpr double kShortestStep = 0.2;  // a step that does not reduce the error is halved down to it
 constexpr int kMostPredictions = 8;
 // A step is refused after which fewer than this share of the patches of a scan are observed, of
@@ -99,9 +103,7 @@ bool TakeStep(const RecordingModel& recording, const ForceLinearisation& lineari
     if (!trial.summary.IsUsable() || linearisation.Coordinates(trial) < state->fewest_rows)
       continue;
     const double reached = linearisation.Rms(trial);
-    fit->converged =
-        share == 1 && std::abs(reached - step.expected_rms) <
-                          std::max(kAgreement * step.expected_rms, kAgreementOverSigma);
+    fit->converged = share == 1 && HasConverged(step.rms_before, step.expected_rms, reached);
     if (!fit->converged && reached >= step.rms_before) continue;
     state->motion = std::move(trial);
     state->amplitudes = amplitudes;
@@ -137,6 +139,12 @@ UnexplainedForce Unusable(UnexplainedForce force, const std::string& why) {
 }
 
 }  // namespace
+
+bool HasConverged(double rms_before, double expected_rms, double reached_rms) {
+  const bool agrees = std::abs(reached_rms - expected_rms) <
+                      std::max(kAgreement * expected_rms, kAgreementOverSigma);
+  return agrees && reached_rms < (1 + kSameError) * std::max(rms_before, expected_rms);
+}
 
 UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
                                           const ReplayedMotion& motion,

@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <stdexcept>
 
@@ -16,6 +17,28 @@ namespace lacuna {
 namespace {
 
 constexpr int kMaxListLength = 10'000'000;
+
+// What to add to the refusal of the value of `key` where a decimal comma has split it: YAML reads
+// "{young_modulus: 0,2 MPa}" as the number 0 and a key "2 MPa" without a value.
+std::string DecimalCommaHint(const YAML::Node& mapping, const std::string& key,
+                             const Dimension& dimension) {
+  for (auto entry = mapping.begin(); entry != mapping.end(); ++entry) {
+    if (entry->first.Scalar() != key) continue;
+    const YAML::Node value = entry->second;
+    if (++entry == mapping.end() || !entry->second.IsNull()) return "";
+    const std::string decimals = entry->first.Scalar();
+    const std::string meant = value.Scalar() + "." + decimals;
+    try {
+      if (decimals.empty() || std::isdigit(static_cast<unsigned char>(decimals.front())) == 0)
+        return "";
+      ParseQuantity(meant, dimension);
+    } catch (const std::invalid_argument&) {
+      return "";
+    }
+    return fmt::format("; the decimal separator must be a point: \"{}\"", meant);
+  }
+  return "";
+}
 
 }  // namespace
 
@@ -30,7 +53,8 @@ double Config::Quantity(const std::string& key, const Dimension& dimension,
     node_->values[key] = value;
     return value;
   } catch (const std::invalid_argument& problem) {
-    node_->Fail(entry.Mark(), node_->Field(key), problem.what());
+    node_->Fail(entry.Mark(), node_->Field(key),
+                problem.what() + DecimalCommaHint(*node_->yaml, key, dimension));
   }
 }
 

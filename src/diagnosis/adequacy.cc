@@ -25,6 +25,13 @@ double TailProbability(const std::vector<double>& sorted, double value) {
   return static_cast<double>(sorted.end() - first) / static_cast<double>(sorted.size());
 }
 
+bool HasUnknownForce(const HypothesisSpace& space) {
+  return std::any_of(space.hypotheses.begin(), space.hypotheses.end(),
+                     [](const WeighedHypothesis& hypothesis) {
+                       return hypothesis.kind == HypothesisKind::kUnknownForce;
+                     });
+}
+
 // Independent standard normal numbers.
 Eigen::VectorXd NormalVector(Eigen::Index size, uint64_t seed, uint64_t number, uint64_t stream) {
   Eigen::VectorXd normal(size);
@@ -82,6 +89,7 @@ AdequacyStatistics MeasureAdequacy(const ProjectedHypotheses& projected,
 
 AdequacyTest TestAdequacy(const HypothesisSpace& space, const std::vector<int>& further,
                           bool noise_is_known, uint64_t seed) {
+  constexpr double kNone = AdequacyTest::kNoStatistic;
   const ProjectedHypotheses projected(space, further);
   const HypothesisSpace marginal = projected.Marginal();
   const double freedom = static_cast<double>(projected.Freedom());
@@ -109,16 +117,17 @@ AdequacyTest TestAdequacy(const HypothesisSpace& space, const std::vector<int>& 
   add(test.found);
   for (const AdequacyStatistics& draw : draws) add(draw);
   for (std::vector<double>& values : all) std::sort(values.begin(), values.end());
+  const bool has_force = HasUnknownForce(space);
   const auto smallest = [&](const AdequacyStatistics& of, AdequacyTest* tails) {
-    const double p[] = {TailProbability(all[0], of.unknown_force),
-                        TailProbability(all[1], of.further),
-                        noise_is_known ? TailProbability(all[2], of.variance) : 1.0};
+    const double of_force = has_force ? TailProbability(all[0], of.unknown_force) : kNone;
+    const double of_further = TailProbability(all[1], of.further);
+    const double of_variance = noise_is_known ? TailProbability(all[2], of.variance) : kNone;
     if (tails != nullptr) {
-      tails->p_unknown_force = p[0];
-      tails->p_further = p[1];
-      tails->p_variance = p[2];
+      tails->p_unknown_force = of_force;
+      tails->p_further = of_further;
+      tails->p_variance = of_variance;
     }
-    return *std::min_element(std::begin(p), std::end(p));
+    return std::fmin(of_further, std::fmin(of_force, of_variance));  // of those that are numbers
   };
   const double found = smallest(test.found, &test);
   int as_small = 1;

@@ -2,18 +2,19 @@
 // with its distribution if the hypothesis is right.
 //
 // The statistics are the log Bayes factor of an unknown smooth force beside the hypothesis, the
-// largest evidence (NamedEvidence) of any further effect or nuisance beside it, and the variance of
-// the residual. With noise, and with amounts of its columns from their priors, t' is normal with
-// the covariance v S (projected_hypotheses.h), so that the distributions are simulated from the
-// products of the recording itself: they need no table of thresholds, and hold whatever the columns
-// are. The smallest of the three tail probabilities is compared with its own distribution, which
-// makes the combined test exact (Tippett's method with simulated dependence; Westfall & Young,
-// Resampling-Based Multiple Testing, 1993).
+// largest evidence (NamedEvidence) of any further effect or nuisance beside it, and, where the
+// noise is known, the variance of the residual. With noise, and with amounts of its columns from
+// their priors, t' is normal with the covariance v S (projected_hypotheses.h), so that the
+// distributions are simulated from the products of the recording itself: they need no table of
+// thresholds, and hold whatever the columns are. The smallest of the three tail probabilities is
+// compared with its own distribution, which makes the combined test exact (Tippett's method with
+// simulated dependence; Westfall & Young, Resampling-Based Multiple Testing, 1993).
 #ifndef LACUNA_DIAGNOSIS_ADEQUACY_H_
 #define LACUNA_DIAGNOSIS_ADEQUACY_H_
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -48,9 +49,13 @@ AdequacyStatistics MeasureAdequacy(const ProjectedHypotheses& projected,
                                    const ResidualProducts& left);
 
 struct AdequacyTest {
+  static constexpr double kNoStatistic = std::numeric_limits<double>::quiet_NaN();
+
   AdequacyStatistics found;
-  // Tail probabilities under the hypothesis: of each statistic, and of their smallest.
-  double p_unknown_force = 1, p_further = 1, p_variance = 1, p = 1;
+  // Tail probabilities under the hypothesis: of each statistic, and of their smallest. NaN for a
+  // statistic that there is not, which is no part of the test: that of an unknown force where the
+  // space has none, and that of the variance where the noise is not known.
+  double p_unknown_force = kNoStatistic, p_further = 1, p_variance = kNoStatistic, p = 1;
 
   // HypothesisSpace::model_error, which may imitate something that is left.
   double model_error = 0;
@@ -60,7 +65,9 @@ struct AdequacyTest {
   double left = 0;
 
   // The size of the residual is the rarest of the statistics.
-  bool IsResidualRarest() const { return p_variance < p_unknown_force && p_variance < p_further; }
+  bool IsResidualRarest() const {
+    return p_variance < p_further && !(p_variance >= p_unknown_force);
+  }
   // Something that may be left is more probable than noise and model error: an unknown force or a
   // further effect has more evidence than `model_error`, or the residual itself is the rarest
   // of the statistics. Otherwise a small p says only that the hypotheses do not describe the noise

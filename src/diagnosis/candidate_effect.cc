@@ -15,14 +15,15 @@ bool AreNeighbours(const VariantPosition& a, const VariantPosition& b) {
 }
 
 double PlausibleScale(const ParameterCard& card) {
-  return std::max(std::abs(card.plausible_min), std::abs(card.plausible_max));
+  const double null = std::isnan(card.null_value) ? 0 : card.null_value;
+  return std::max(std::abs(card.plausible_min - null), std::abs(card.plausible_max - null));
 }
 
 std::vector<CandidateAmount> AmountsOf(const CandidateEffect& candidate) {
   if (candidate.IsPilot()) return {{"share", "", 1, true}};
   std::vector<CandidateAmount> amounts;
   for (const int index : candidate.amplitude) {
-    const ParameterCard& parameter = candidate.effect->Card().parameters[index];
+    const ParameterCard parameter = candidate.CardOf(index);
     amounts.push_back({parameter.name, parameter.dimension.unit, PlausibleScale(parameter),
                        parameter.bounds.min >= parameter.null_value});
   }

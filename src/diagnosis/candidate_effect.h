@@ -50,19 +50,29 @@ struct CandidateEffect {
     bool IsHeld() const { return min == max; }
   };
   std::map<std::string, Range> known = {};
+  // The values of the effect's parameters about which the priors of a refit lie, as far as no range
+  // and no null value says otherwise. Empty: the values at which the refit starts.
+  Eigen::VectorXd prior_centre = {};
   // The effect replaces the elasticity law of the model; false: it is added to the model.
   bool replaces_material = false;
+  double young_modulus = kReferenceModulus;  // Pa, of the model that lacks the effect
+
+  // The card of a parameter, with the range that is plausible in this model.
+  ParameterCard CardOf(int parameter) const {
+    return PlausibleIn(young_modulus, effect->Card().parameters[static_cast<size_t>(parameter)]);
+  }
 
   bool IsPilot() const { return amplitude.empty(); }
 };
 
-// The largest plausible absolute value of a parameter, SI: the scale of its prior.
+// The largest plausible distance of a parameter from its null value, or from 0 where it has none,
+// SI: the scale of its prior.
 double PlausibleScale(const ParameterCard& card);
 
 // One of the numbers that make the size of a candidate.
 struct CandidateAmount {
   std::string name, unit;
-  double plausible = 1;      // the largest plausible absolute value: the scale of the prior
+  double plausible = 1;      // PlausibleScale(): the amount counts from the null value
   bool is_positive = false;  // the amount cannot be negative
 };
 // One amount for each amplitude, in that order; the share for a pilot.

@@ -29,8 +29,8 @@ const WeighedRefit* FindRefit(const DecisionInput& input, const std::string& eff
 // Whether the model could not be fitted with these two effects.
 bool HasFailed(const DecisionInput& input, const std::string& a, const std::string& b);
 
-// What the adopted nuisances add to the evidence of every hypothesis: their own evidence, and the
-// prior probability that there is such a nuisance. 0 where there are none.
+// What the adopted nuisances add to the evidence of every hypothesis beside which they stand: their
+// own evidence, and the prior probability that there is such a nuisance. 0 where there are none.
 double EvidenceOfAdopted(const DecisionInput& input);
 
 // The space in which a hypothesis is tested, and its columns there beside the base.

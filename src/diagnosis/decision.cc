@@ -27,12 +27,12 @@ double NaturalValueOf(const DecisionInput& input, const std::string& effect) {
   return natural != input.natural_value.end() ? natural->second : 0;
 }
 
-// Adopted nuisances are in the base, so that every hypothesis contains them. Hypotheses without
-// them are added: effects in their place, and nothing.
+// Adopted nuisances are in the base, so that every hypothesis contains them. Alone they have the
+// prior of a nuisance, like one that was not adopted; beside something else, the product of the two
+// priors. Hypotheses without them are added: effects in their place, and nothing.
 void CompareWithAdopted(const DecisionInput& input, double effects,
                         std::vector<HypothesisProbability>* hypotheses) {
   if (input.adopted.empty()) return;
-  const double adopted = EvidenceOfAdopted(input);
   std::vector<HypothesisProbability> in_place;
   for (HypothesisProbability& one : *hypotheses) {
     for (const WeighedRefit& refit : input.in_place_of_adopted) {
@@ -42,10 +42,11 @@ void CompareWithAdopted(const DecisionInput& input, double effects,
                        NaturalValueOf(input, refit.effect);
       alone.is_refuted = !refit.predicts;
     }
-    one.evidence += adopted;
     if (one.kind == Kind::kNothing) {
       one.kind = Kind::kNuisance;
-      one.evidence += std::log(kPriorNothing / kPriorNuisances);
+      one.evidence += input.adopted_evidence;
+    } else {
+      one.evidence += EvidenceOfAdopted(input);
     }
     one.names.insert(one.names.end(), input.adopted.begin(), input.adopted.end());
   }
@@ -54,15 +55,20 @@ void CompareWithAdopted(const DecisionInput& input, double effects,
 }
 
 // First order overrates large effects. The evidence of an effect that was not refitted is reduced
-// by the share that the best refit has kept of its own.
-double KeptShare(const DecisionInput& input, const std::vector<NamedEvidence>& first_order) {
+// by the share that the best refit has kept of its own. `effects`: ln n, which the evidence to
+// first order has given up already.
+double KeptShare(const DecisionInput& input, const std::vector<NamedEvidence>& first_order,
+                 double effects) {
   const WeighedRefit* best = nullptr;
   for (const WeighedRefit& refit : input.refits)
-    if (refit.predicts && refit.evidence > (best != nullptr ? best->evidence : 0)) best = &refit;
+    if (refit.predicts && (best == nullptr || refit.evidence > best->evidence)) best = &refit;
   if (best == nullptr) return 1;
+  const double kept = best->evidence - effects;
+  if (!(kept > 0)) return 1;
   for (const NamedEvidence& named : first_order)
-    if (named.name == best->effect && named.evidence > best->evidence)
-      return best->evidence / named.evidence;
+    if (named.kind == HypothesisKind::kEffect && named.name == best->effect &&
+        named.evidence > kept)
+      return kept / named.evidence;
   return 1;
 }
 
@@ -84,12 +90,12 @@ std::optional<double> RefittedEvidence(const DecisionInput& input, const std::st
 }
 
 // The posterior over single hypotheses.
-std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
-                                               const std::vector<NamedEvidence>& first_order) {
+std::vector<HypothesisProbability> SinglePosterior(const DecisionInput& input,
+                                                   const std::vector<NamedEvidence>& first_order) {
   std::vector<HypothesisProbability> hypotheses =
       HypothesesOf(first_order, input.families, input.baseline.model_error);
-  const double share = KeptShare(input, first_order);
   const double effects = std::log(static_cast<double>(CountOf(hypotheses, Kind::kEffect)));
+  const double share = KeptShare(input, first_order, effects);
   const double nuisances = std::log(static_cast<double>(CountOf(hypotheses, Kind::kNuisance)));
   for (HypothesisProbability& one : hypotheses) {
     if (one.kind == Kind::kEffect) {
@@ -97,10 +103,11 @@ std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
       one.is_refuted = refit != nullptr && !refit->predicts;
       // An effect is compared with the model without it, whose error along its own motion, that of
       // the baseline, may imitate the effect, whatever columns stand beside the refit.
+      const double error = input.baseline.model_error;
       if (refit != nullptr)
-        one.evidence = refit->evidence - effects - input.baseline.model_error;
-      else if (one.evidence > 0)
-        one.evidence *= share;
+        one.evidence = refit->evidence - effects - error;
+      else
+        one.evidence -= (1 - share) * std::max(0.0, one.evidence + error);
       one.evidence += NaturalValueOf(input, one.names.front());
     } else if (one.kind == Kind::kNuisance) {
       if (const std::optional<double> refitted = RefittedEvidence(input, one.names.front()))
@@ -110,6 +117,42 @@ std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
   CompareWithAdopted(input, effects, &hypotheses);
   SetPosterior(&hypotheses);
   return hypotheses;
+}
+
+// The posterior over all hypotheses, and what it was made from.
+struct Weighed {
+  explicit Weighed(const DecisionInput& input);
+
+  // The space and the columns with which the most probable hypothesis is tested.
+  TestedSpace Tested(const DecisionInput& input) const;
+
+  ProjectedHypotheses beside_nothing;
+  std::vector<NamedEvidence> first_order;
+  std::vector<Combination> combinations;
+  std::vector<HypothesisProbability> distinguished;  // before repeated ones were merged
+  std::vector<HypothesisProbability> posterior;
+  HypothesisProbability best;  // the most probable part of what was merged into the first one
+};
+
+Weighed::Weighed(const DecisionInput& input)
+    : beside_nothing(input.baseline),
+      first_order(SumVariants(input.baseline, beside_nothing.FactorsOfResidual())) {
+  distinguished = SinglePosterior(input, first_order);
+  combinations = CombinationsOf(input, first_order, distinguished);
+  for (const Combination& both : combinations) distinguished.push_back(both.hypothesis);
+  SetPosterior(&distinguished);
+  posterior = distinguished;
+  MergeRepeated(&posterior);
+  best = *std::find_if(distinguished.begin(), distinguished.end(),
+                       [&](const auto& one) { return IsRepeated(one, posterior.front()); });
+}
+
+TestedSpace Weighed::Tested(const DecisionInput& input) const {
+  TestedSpace tested = TestedSpaceOf(input, first_order, best);
+  for (const Combination& both : combinations)
+    if (both.hypothesis.names == best.names && both.hypothesis.evidence == best.evidence)
+      tested = both.tested;
+  return tested;
 }
 
 // Adds to the columns of a hypothesis with an effect those of the nuisances that explain the
@@ -202,28 +245,17 @@ std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>
   return hypotheses;
 }
 
+std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input) {
+  return Weighed(input).posterior;
+}
+
 Decision Decide(const DecisionInput& input) {
-  const ProjectedHypotheses beside_nothing(input.baseline);
-  const std::vector<NamedEvidence> first_order =
-      SumVariants(input.baseline, beside_nothing.FactorsOfResidual());
+  const Weighed weighed(input);
   Decision decision;
   DecisionRecord& record = decision.record;
-  record.probabilities = PosteriorOf(input, first_order);
-  const std::vector<Combination> combinations =
-      CombinationsOf(input, first_order, record.probabilities);
-  for (const Combination& both : combinations) record.probabilities.push_back(both.hypothesis);
-  SetPosterior(&record.probabilities);
-  const std::vector<HypothesisProbability> distinguished = record.probabilities;
-  MergeRepeated(&record.probabilities);
-  const HypothesisProbability& first = record.probabilities.front();
-  // The most probable part of what has been merged is tested.
-  const HypothesisProbability& best =
-      *std::find_if(distinguished.begin(), distinguished.end(),
-                    [&](const auto& one) { return IsRepeated(one, first); });
-  TestedSpace tested = TestedSpaceOf(input, first_order, best);
-  for (const Combination& both : combinations)
-    if (both.hypothesis.names == best.names && both.hypothesis.evidence == best.evidence)
-      tested = both.tested;
+  record.probabilities = weighed.posterior;
+  const HypothesisProbability &first = record.probabilities.front(), &best = weighed.best;
+  TestedSpace tested = weighed.Tested(input);
   std::vector<std::string> beside = first.names.empty() ? input.adopted : first.names;
   if (best.kind == Kind::kEffect || best.kind == Kind::kPair)
     for (const std::string& nuisance : TakeNuisancesBeside(&tested))
@@ -231,7 +263,7 @@ Decision Decide(const DecisionInput& input) {
   const AdequacyTest test =
       TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
   record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit, std::move(beside));
-  record.chance = ChanceOf(input, beside_nothing);
+  record.chance = ChanceOf(input, weighed.beside_nothing);
 
   const Naming naming = NameFrom(record.probabilities);
   decision.names = naming.names;

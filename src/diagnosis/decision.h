@@ -30,6 +30,10 @@ struct Decision {
 
 Decision Decide(const DecisionInput& input);
 
+// DecisionRecord::probabilities of Decide() alone, the most probable hypothesis first. The tests of
+// the most probable one and the simulations, which take most of the time of Decide(), are left out.
+std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input);
+
 // The family of an effect; kOther where it has none.
 EffectFamily FamilyOf(const std::map<std::string, EffectFamily>& families,
                       const std::string& effect);

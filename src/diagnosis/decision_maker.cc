@@ -45,21 +45,45 @@ double EvidenceOfNaturalValue(const CandidateEffect& candidate,
   return NaturalValueEvidence(mean, deviation, prior, card.natural_magnitude);
 }
 
-// The space along the refit of an effect, or of two.
-HypothesisSpace SpaceAlong(const FittedHypothesis& hypothesis, const RefittedRanking& ranked,
-                           const EffectRanking& ranking, std::vector<std::string> types,
-                           const NoiseLevel& noise) {
-  if (!ranked.along) return SpaceOf(hypothesis, ranking, types, noise);
-  const auto along = std::find(types.begin(), types.end(), ranked.along->type);
-  if (along == types.end()) return SpaceOf(hypothesis, *ranked.along->for_others, types, noise);
-  // The ranking along its motion may have this effect a second time.
-  types.erase(along);
-  return SpaceOf(hypothesis, *ranked.along->ranking, types, noise);
-}
+// Makes the spaces along the refits. Spaces with the same hypotheses beside them that are made one
+// after another share their whitened columns. References must outlive it.
+class SpaceMaker {
+ public:
+  SpaceMaker(const RefittedRanking& ranked, const EffectRanking& ranking, const NoiseLevel& noise)
+      : ranked_(ranked), ranking_(ranking), noise_(noise) {}
+
+  // The space along the model without an effect.
+  HypothesisSpace OfBaseline() { return Beside(ranked_.baseline.hypothesis, ranking_, {}); }
+  // The space along the refit of an effect, or of two.
+  HypothesisSpace Along(const FittedHypothesis& hypothesis, std::vector<std::string> types) {
+    if (!ranked_.along) return Beside(hypothesis, ranking_, types);
+    const auto along = std::find(types.begin(), types.end(), ranked_.along->type);
+    if (along == types.end()) return Beside(hypothesis, *ranked_.along->for_others, types);
+    // The ranking along its motion may have this effect a second time.
+    types.erase(along);
+    return Beside(hypothesis, *ranked_.along->ranking, types);
+  }
+
+ private:
+  HypothesisSpace Beside(const FittedHypothesis& hypothesis, const EffectRanking& ranking,
+                         const std::vector<std::string>& types) {
+    const LinearisedMisfit& misfit = hypothesis.misfit;
+    if (!latest_ || &latest_->ranking() != &ranking || !latest_->WhitensLike(misfit)) {
+      latest_.reset();  // before the next one is made: it may be large
+      latest_.emplace(ranking, misfit, noise_);
+    }
+    return latest_->Beside(misfit, misfit.jacobian, hypothesis.priors, types);
+  }
+
+  const RefittedRanking& ranked_;
+  const EffectRanking& ranking_;
+  const NoiseLevel& noise_;
+  std::optional<WhitenedHypotheses> latest_;
+};
 
 // Nothing if the first effect has no usable refit, or if the evidence is not a finite number.
 std::optional<WeighedPair> Weigh(const FittedPair& pair, const RefittedRanking& ranked,
-                                 const EffectRanking& ranking, const NoiseLevel& noise) {
+                                 const NoiseLevel& noise, SpaceMaker* spaces) {
   const std::optional<size_t> first = ranked.FindUsable(pair.first);
   if (!first) return std::nullopt;
   const RankedEffect& alone = ranked.effects[*first];
@@ -72,7 +96,7 @@ std::optional<WeighedPair> Weigh(const FittedPair& pair, const RefittedRanking& 
   if (!std::isfinite(gain)) return std::nullopt;
   const std::string& second = pair.second.scored.candidate.type;
   return WeighedPair{pair.first, second, gain,
-                     SpaceAlong(pair.both.hypothesis, ranked, ranking, {pair.first, second}, noise),
+                     spaces->Along(pair.both.hypothesis, {pair.first, second}),
                      PairPredicts(pair, ranked, noise)};
 }
 
@@ -98,24 +122,23 @@ double NaturalValueEvidence(const Eigen::Vector3d& mean, const Eigen::Vector3d& 
 DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanking& ranked,
                                 const RefitNoise& noise,
                                 const std::vector<ScoredNuisance>& nuisances) {
-  const EffectRanking& ranking = context.ranking;
+  SpaceMaker spaces(ranked, context.ranking, noise.level);
   DecisionInput input;
-  input.baseline = SpaceOf(ranked.baseline.hypothesis, ranking, {}, noise.level);
+  input.baseline = spaces.OfBaseline();
   for (size_t k = 0; k < ranked.effects.size(); ++k) {
     const RankedEffect& effect = ranked.effects[k];
     const CandidateEffect& candidate = effect.scored.candidate;
     if (candidate.effect != nullptr)
       input.families[candidate.type] = candidate.effect->Card().family;
     if (!ranked.IsUsable(k)) continue;
-    input.refits.push_back(
-        {candidate.type, effect.evidence + effect.penalty_of_effects,
-         SpaceAlong(ranked.refits[k].hypothesis, ranked, ranking, {candidate.type}, noise.level),
-         effect.predicts});
+    input.refits.push_back({candidate.type, effect.evidence + effect.penalty_of_effects,
+                            spaces.Along(ranked.refits[k].hypothesis, {candidate.type}),
+                            effect.predicts});
     if (const double natural = EvidenceOfNaturalValue(candidate, effect.sizes); natural != 0)
       input.natural_value[candidate.type] = natural;
   }
   for (const FittedPair& pair : ranked.pairs)
-    if (std::optional<WeighedPair> weighed = Weigh(pair, ranked, ranking, noise.level))
+    if (std::optional<WeighedPair> weighed = Weigh(pair, ranked, noise.level, &spaces))
       input.pairs.push_back(*std::move(weighed));
   input.failed_pairs = ranked.failed_pairs;
   for (const ScoredNuisance& nuisance : nuisances) {

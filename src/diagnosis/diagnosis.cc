@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "calibration/calibration_fits.h"
+#include "diagnosis/decision.h"
 #include "diagnosis/decision_maker.h"
 #include "diagnosis/effect_refit.h"
 #include "diagnosis/nuisance_refits.h"
@@ -86,7 +87,7 @@ void DecideUpon(const RefitContext& context, const DiagnosisOptions& options,
   open.DecideAgain();
   RankAlongBest(&open);
   FitRivalPairs(&open);
-  Decision& decision = open.decision;
+  Decision decision = Decide(open.input);
   if (decision.verdict == Verdict::kNuisance && context.ranking.adopted.HasMore()) {
     diagnosis->alternatives =
         RefitInPlaceOfNuisances(context, open.ranked, open.noise, options.refits);

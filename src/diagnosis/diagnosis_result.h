@@ -23,10 +23,11 @@ namespace lacuna {
 // describes here.
 struct RankedEffect {
   ScoredEffect scored;
-  bool refitted = false;      // the fields below are those of the refit
-  std::string refit_message;  // why it is not usable; empty: it is usable
-  std::string unconverged;    // as in EffectRefit
-  bool predicts = true;       // as Predicts (effect_refit.h) says
+  bool refitted = false;        // the fields below are those of the refit
+  std::string refit_message;    // why it is not usable; empty: it is usable
+  std::string unconverged;      // as in EffectRefit
+  bool predicts = true;         // as Predicts (effect_refit.h) says
+  bool fails_at_limit = false;  // as in RecordedRefit
   ModelErrors errors;
   double evidence = 0;                // as in RecordedRefit (record/diagnosis_record.h)
   double penalty_of_effects = 0;      // for the choice among all effects, subtracted in `evidence`
@@ -37,6 +38,7 @@ struct RankedEffect {
   Eigen::VectorXd values;             // the effect's parameters; empty: there is no usable refit
   Eigen::VectorXd baseline_values;    // as in EffectRefit
   std::vector<ParameterEstimate> sizes;  // of the parameters that make its size
+  std::vector<bool> at_limit;            // as in EffectRefit
   std::vector<NamedEstimate> others;     // as in EffectRefit
 
   bool HasUsableRefit() const { return refitted && refit_message.empty(); }

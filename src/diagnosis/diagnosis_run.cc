@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "diagnosis/decision_store.h"
+#include "diagnosis/model_change.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "effects/catalogue.h"
 #include "record/run_directory.h"
@@ -20,7 +21,7 @@ namespace {
 using nlohmann::json;
 
 // Raised when the diagnosis changes so that its result does.
-constexpr int kDiagnosisVersion = 54;
+constexpr int kDiagnosisVersion = 55;
 
 std::filesystem::path ResultFile(const std::filesystem::path& run) {
   return run / "diagnosis" / "diagnosis.json";
@@ -61,21 +62,19 @@ json SettingsOf(const Diagnosis& diagnosis) {
   json settings = json::object();
   for (const RankedEffect& effect : diagnosis.ranking) {
     const CandidateEffect& candidate = effect.scored.candidate;
-    Eigen::VectorXd values = effect.values;
-    if (values.size() == 0) {
-      values = candidate.effect->Parameters();
-      for (size_t k = 0; k < candidate.amplitude.size(); ++k)
-        values[candidate.amplitude[k]] = effect.scored.score.size[static_cast<Eigen::Index>(k)];
-    }
+    const Eigen::VectorXd start = StartOfRefit(effect.scored);
+    const Eigen::VectorXd& values = effect.values.size() > 0 ? effect.values : start;
     json known = json::object();
     for (const auto& [name, range] : candidate.known) known[name] = {range.min, range.max};
     settings[candidate.type] = {{"values", std::vector<double>(values.begin(), values.end())},
+                                {"start", std::vector<double>(start.begin(), start.end())},
                                 {"model", std::vector<double>(effect.baseline_values.begin(),
                                                               effect.baseline_values.end())},
                                 {"amplitude", candidate.amplitude},
                                 {"refined", candidate.refined},
                                 {"known", known},
-                                {"replaces_material", candidate.replaces_material}};
+                                {"replaces_material", candidate.replaces_material},
+                                {"young_modulus", candidate.young_modulus}};
   }
   return settings;
 }
@@ -150,7 +149,7 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
   FitStore kept(RefitsFile(run), OriginOf(run, options));
   const Diagnosis diagnosis = Diagnose(problem, fitted.values, options, progress, &kept,
                                        ReadOtherMesh(FinishedStage(run, "calibration")));
-  SaveDecisionInput(diagnosis.decision_input, DecisionFolder(run));
+  WriteDecisionInput(diagnosis.decision_input, DecisionFolder(run));
   WriteDiagnosisFile(RecordOf(diagnosis), ResultFile(run));
   const json settings = SettingsOf(diagnosis);
   const json origin = {{"schema_version", 2},
@@ -178,24 +177,32 @@ ScoredEffect DiagnosedEffect(const FittedRun& fitted, const std::filesystem::pat
     for (const auto& [name, range] : settings.at("known").items())
       candidate.known[name] = {range.at(0), range.at(1)};
     candidate.replaces_material = settings.at("replaces_material");
+    candidate.young_modulus = settings.at("young_modulus");
     const std::vector<double> model = settings.at("model");
     scored.baseline_values =
         Eigen::Map<const Eigen::VectorXd>(model.data(), static_cast<Eigen::Index>(model.size()));
     const std::string other =
-        OriginFile(run).string() + ": is of another catalogue; diagnose again";
+        OriginFile(run).string() + ": was made with another catalogue of effects; diagnose again";
     candidate.effect = MadeFrom(
         fitted.study, effect.type,
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
     if (candidate.effect == nullptr) throw InputError(other);
     if (AmountsOf(candidate).size() != effect.sizes.size()) throw InputError(other);
+    const std::vector<double> start = settings.at("start");
+    if (start.size() != values.size()) throw InputError(other);
+    candidate.prior_centre =
+        Eigen::Map<const Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size()));
     Score& score = scored.score;
     score.evidence = effect.HasUsableRefit() ? effect.refit->evidence : effect.first_order.evidence;
     score.size.setOnes(static_cast<Eigen::Index>(effect.sizes.size()));  // of a pilot
     score.detectable = score.size;
     for (size_t k = 0; k < effect.sizes.size(); ++k) {
       const Eigen::Index at = static_cast<Eigen::Index>(k);
-      if (!candidate.IsPilot())
-        score.size[at] = values[static_cast<size_t>(candidate.amplitude[k])];
+      if (!candidate.IsPilot()) {
+        const int index = candidate.amplitude[k];
+        score.size[at] = values[static_cast<size_t>(index)] -
+                         candidate.effect->Card().parameters[index].null_value;
+      }
       score.detectable[at] = effect.sizes[k].detectable;
     }
     return scored;

@@ -35,7 +35,6 @@ struct EffectRanking {
   double explained_misfit = 0;    // as PredictionStudy has it
   LinearisedMisfit misfit;        // at the fitted values, without columns
   Eigen::MatrixXd unknown_force;  // the columns of UnknownForceColumns (unknown_force.h)
-  HypothesisSpace space;          // of all hypotheses beside the parameters and adopted nuisances
   int variants = 0;               // number of variants scored
   SceneColumns scene;             // for further rankings
   AgreementRecord agreement;      // of the recordings, along the fitted motion
@@ -47,12 +46,46 @@ struct EffectRanking {
   const ScoredEffect* Find(const std::string& type) const;
 };
 
+// The columns of everything that a ranking has tried, whitened with one noise, and their products:
+// what the spaces beside different bases have in common.
+class WhitenedHypotheses {
+ public:
+  // `misfit`: has the rows of all columns, and must outlive this, as must the ranking.
+  WhitenedHypotheses(const EffectRanking& ranking, const LinearisedMisfit& misfit,
+                     const NoiseLevel& noise);
+
+  // Whether rows of this misfit are whitened in the same way, as Beside() needs.
+  bool WhitensLike(const LinearisedMisfit& misfit) const;
+  // The space of all hypotheses that the ranking has tried, as SpaceBeside() says.
+  HypothesisSpace Beside(const LinearisedMisfit& misfit, const Eigen::MatrixXd& base,
+                         const std::vector<LinearPrior>& priors,
+                         const std::vector<std::string>& without,
+                         bool base_has_adopted = true) const;
+
+  const EffectRanking& ranking() const { return ranking_; }
+
+ private:
+  struct Tried {
+    WeighedHypothesis hypothesis;  // its columns are indices in `columns_`
+    bool is_adopted = false;
+  };
+  void Add(Tried tried, Eigen::Index width);
+
+  const EffectRanking& ranking_;
+  const LinearisedMisfit& misfit_;
+  NoiseLevel noise_;
+  std::vector<Tried> tried_;  // without those that have no columns
+  Eigen::MatrixXd columns_;
+  Eigen::MatrixXd products_;
+  std::vector<LinearPrior> priors_;
+};
+
 // The space of all hypotheses that a ranking has tried, beside the columns `base` (m, the rows of
 // `misfit`) with these priors, for the residual of `misfit`. `without`: types of effects that are
 // left out, because they are part of the base. `base_has_adopted`: so are the adopted nuisances;
 // otherwise they are hypotheses like the others.
 HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixXd& base,
-                            std::vector<LinearPrior> priors, const EffectRanking& ranking,
+                            const std::vector<LinearPrior>& priors, const EffectRanking& ranking,
                             const std::vector<std::string>& without, const NoiseLevel& noise,
                             bool base_has_adopted = true);
 

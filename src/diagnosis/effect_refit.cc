@@ -93,8 +93,14 @@ double PersistenceOf(const NoiseLevel& noise, const LinearisedMisfit& misfit) {
   return persistence;
 }
 
+int FittedRecordings(const CalibrationProblem& problem) {
+  const auto& models = problem.models();
+  return static_cast<int>(std::count_if(
+      models.begin(), models.end(), [](const auto& model) { return model.recording().fitted; }));
+}
+
 bool IsBetter(const Calibration& a, const Calibration& b) {
-  return !a.estimates.empty() && (b.estimates.empty() || a.rms < b.rms);
+  return a.HasSolution() && (!b.HasSolution() || a.rms < b.rms);
 }
 
 // The better of the fits from two starts: the baseline's parameters, and those of a fit of the
@@ -107,15 +113,15 @@ ExtendedFit FitFromTwoStarts(const ExtendedProblem& extended, const std::string&
   ExtendedFit fit;
   Calibration afresh;
   const auto is_good = [&] {
-    return !fit.calibration.estimates.empty() &&
-           fit.calibration.rms <= kThresholds.refit.rms_at_noise;
+    return fit.calibration.HasSolution() && fit.calibration.rms <= kThresholds.refit.rms_at_noise;
   };
   const auto fit_from_start = [&] {
     fit = extended.CalibrateFrom(start, stage, hopeless_cost, progress);
   };
-  // With several threads, the second start is looked for during the first fit. It is not used where
-  // the first fit is good, so that the result is the same.
-  if (ThreadCount() > 1) {
+  // The recordings are predicted side by side. Where threads are left, the second start is looked
+  // for during the first fit. It is not used where the first fit is good, so that the result is the
+  // same.
+  if (ThreadCount() > FittedRecordings(extended.problem())) {
     Progress silent({.style = ProgressStyle::kSilent});
     ParallelFor(2, 1, [&](int64_t k) {
       if (k == 0)
@@ -128,8 +134,7 @@ ExtendedFit FitFromTwoStarts(const ExtendedProblem& extended, const std::string&
     if (!is_good()) afresh = extended.CalibrateAfresh(progress);
   }
   if (is_good() || afresh.parameters.size() != start.size()) return fit;
-  if (!fit.calibration.estimates.empty())
-    hopeless_cost = std::min(hopeless_cost, fit.calibration.cost);
+  if (fit.calibration.HasSolution()) hopeless_cost = std::min(hopeless_cost, fit.calibration.cost);
   ExtendedFit other =
       extended.CalibrateFrom(afresh.parameters, stage + ", second start", hopeless_cost, progress);
   const int predictions =
@@ -146,19 +151,24 @@ std::string StageOf(const ScoredVariant* effect) {
 ExtendedFit FitExtended(const ExtendedProblem& extended, const ScoredVariant* effect,
                         const RefitOptions& options, Progress* progress) {
   const std::string stage = StageOf(effect);
-  Eigen::VectorXd start;
+  FitStart start;
   if (options.from == RefitFrom::kFixedSize)
     start = extended.StartAtFixedSize(stage + " at a size");
-  if (start.size() == 0) {
+  if (start.values.size() == 0) {
     Eigen::VectorXd refitted;
     if (effect != nullptr && options.without != nullptr && options.without->message.empty())
       refitted = options.without->calibration.parameters;
+    const int of_held_fits = start.predictions;
     start = extended.Start(refitted);
+    start.predictions += of_held_fits;
   }
   // A fit with the effect held at a size has given another start already.
-  return effect != nullptr && options.is_far_off && options.from == RefitFrom::kFirstOrder
-             ? FitFromTwoStarts(extended, stage, start, options.hopeless_cost, progress)
-             : extended.CalibrateFrom(start, stage, options.hopeless_cost, progress);
+  ExtendedFit fit =
+      effect != nullptr && options.is_far_off && options.from == RefitFrom::kFirstOrder
+          ? FitFromTwoStarts(extended, stage, start.values, options.hopeless_cost, progress)
+          : extended.CalibrateFrom(start.values, stage, options.hopeless_cost, progress);
+  fit.calibration.predictions += start.predictions;
+  return fit;
 }
 
 // Sets what depends on the nuisances beside a refit, whose hypothesis is that at `values`, and
@@ -191,11 +201,14 @@ EffectRefit FinishedRefit(ExtendedFit fit, const ExtendedProblem& extended,
   EffectRefit refit;
   refit.calibration = std::move(fit.calibration);
   const Calibration& calibration = refit.calibration;
-  if (calibration.estimates.empty()) {
+  if (!calibration.HasSolution()) {
     refit.message = calibration.message;
     return refit;
   }
   if (!calibration.usable) refit.unconverged = calibration.message;
+  const bool is_hopeless = calibration.cost > hopeless_cost;
+  if (calibration.usable && is_hopeless)
+    refit.unconverged = "the search has ended too far from the measurements to be followed further";
   // With markers, one prediction serves both.
   LinearisedMisfit own_misfit = std::move(fit.misfit);
   if (!own_misfit.usable && !with.HasScans())
@@ -209,9 +222,9 @@ EffectRefit FinishedRefit(ExtendedFit fit, const ExtendedProblem& extended,
     refit.baseline_values = calibration.parameters.head(
         static_cast<Eigen::Index>(setting.model.problem.study().fitted.size()));
     refit.sizes = extended.SizesIn(calibration);
+    refit.at_limit = extended.SizesAtLimit(calibration);
     refit.others = extended.OthersIn(calibration);
   }
-  const bool is_hopeless = !calibration.usable && calibration.cost > hopeless_cost;
   FinishBeside(extended, setting, calibration.parameters, !is_hopeless, &refit);
   return refit;
 }
@@ -236,13 +249,19 @@ double PredictiveGain(const EffectRefit& with, const EffectRefit& without,
          0.5 * squares / (noise.variance * PersistenceOf(noise, with.hypothesis.misfit));
 }
 
-bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise,
-              int tests) {
+bool IsContradicted(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise,
+                    int tests) {
   // At most one in so many recordings in which the effect is missing refutes it. Larger values keep
   // more wrong effects that fail later in the motion.
   constexpr double kOneIn = 100;
-  return !with.unconverged.empty() || !without.errors.has_held_out ||
-         PredictiveGain(with, without, noise) >= -std::log(kOneIn * tests);
+  return without.errors.has_held_out &&
+         !(PredictiveGain(with, without, noise) >= -std::log(kOneIn * tests));
+}
+
+bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise,
+              int tests) {
+  return !with.unconverged.empty() || with.IsAtLimit() ||
+         !IsContradicted(with, without, noise, tests);
 }
 
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
@@ -309,9 +328,11 @@ MovedRefit MovedBeside(const RefitSetting& setting, const ScoredVariant& effect,
                        const NoiseLevel& noise) {
   const ExtendedProblem extended(setting.model, &effect, setting.adopted);
   MovedRefit moved{MovedBeside(extended, setting, std::move(refit), /*settles=*/false)};
-  if (moved.refit.message.empty())
-    moved.gain_in_reach = FirstOrderGain(
-        extended.problem(), {moved.refit.values_at_fit, moved.refit.hypothesis}, noise);
+  if (!moved.refit.message.empty()) return moved;
+  const Eigen::VectorXd& values = moved.refit.values_at_fit;
+  const FittedHypothesis& hypothesis = moved.refit.hypothesis;
+  moved.gain_in_reach = FirstOrderGain(extended.problem(), {values, hypothesis}, noise);
+  moved.first_step = extended.FirstStepFrom(values, hypothesis.misfit);
   return moved;
 }
 

@@ -7,6 +7,7 @@
 #define LACUNA_DIAGNOSIS_EFFECT_REFIT_H_
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -26,19 +27,25 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
 
 struct EffectRefit {
   std::string message;  // why the refit is not usable; empty: it is usable
-  // Why the fit ended before it had converged; empty: it has converged. What it has found is less
-  // than the effect can explain, so that it refutes nothing (Predicts).
+  // Why the fit ended before it had converged, or was not settled; empty: it has converged. What it
+  // has found is less than the effect can explain, so that it refutes nothing (Predicts).
   std::string unconverged;
   Calibration calibration;
   Eigen::VectorXd nuisance_amounts;  // of the adopted nuisances, at the end of the fit
   Eigen::VectorXd effect_values;     // of all parameters of the effect, in the order of its card
   Eigen::VectorXd baseline_values;   // of the fitted parameters that the model had before
   std::vector<ParameterEstimate> sizes;  // those that make its size; empty for a pilot
-  std::vector<NamedEstimate> others;     // its other fitted parameters: place, time
+  // Of the sizes: the fit has ended at the limit of what is plausible.
+  std::vector<bool> at_limit;
+  std::vector<NamedEstimate> others;  // its other fitted parameters: place, time
   ModelErrors errors;
   FittedHypothesis at_fit;        // at the best parameters for the fitted frames
   Eigen::VectorXd values_at_fit;  // these parameters
   FittedHypothesis hypothesis;    // at the best parameters for all frames
+
+  bool IsAtLimit() const {
+    return std::find(at_limit.begin(), at_limit.end(), true) != at_limit.end();
+  }
 };
 
 // The log evidence of all frames, and that of the held-out frames given the fitted ones:
@@ -68,12 +75,17 @@ bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& ref
 // residuals and the persistence of the noise.
 double PredictiveGain(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise);
 
-// Whether that is compatible with the effect being missing. If it is, the gain is below −ln 100 in
-// fewer than one recording in 100, whatever the size of the effect: exp(−gain) then is a ratio of
-// densities with the mean 1 (Markov's inequality). True where nothing is held out, and if the refit
-// has not converged: other parameters may predict better. `tests`: the number of comparisons all of
-// which the refit must pass; each allows for so much less, so that the bound holds for all of them
-// together (Bonferroni).
+// Whether that is incompatible with the effect being missing. If it is missing, the gain is below
+// −ln 100 in fewer than one recording in 100, whatever the size of the effect: exp(−gain) then is a
+// ratio of densities with the mean 1 (Markov's inequality). False where nothing is held out.
+// `tests`: the number of comparisons all of which the refit must pass; each allows for so much
+// less, so that the bound holds for all of them together (Bonferroni).
+bool IsContradicted(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise,
+                    int tests = 1);
+
+// Whether the held-out frames do not refute the effect: they do not contradict the refit, or other
+// parameters may predict better, because the refit has not converged, or because its size has ended
+// at the limit of what is plausible.
 bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise,
               int tests = 1);
 
@@ -100,7 +112,8 @@ struct RefitOptions {
   // The refit with the same nuisances and without the effect, beside whose parameters the refit may
   // start; null: unknown.
   const EffectRefit* without = nullptr;
-  // CalibrationOptions::hopeless_cost of the fit; a fit that this ends is not settled.
+  // CalibrationOptions::hopeless_cost of the fit; one that ends above it is not settled, and counts
+  // as not converged.
   double hopeless_cost = std::numeric_limits<double>::infinity();
 };
 
@@ -135,6 +148,7 @@ struct MovedRefit {
   EffectRefit refit;
   // The log evidence that the best change of its parameters would gain, to first order.
   double gain_in_reach = 0;
+  FirstStep first_step = {};  // of a fit from there
 };
 // Moves a refit to the parameters that are best beside the nuisances of `setting`; nothing is
 // predicted. Its estimates stay those of its fit. `noise`: in which the gain is measured.

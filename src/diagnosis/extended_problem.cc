@@ -11,6 +11,8 @@
 #include "core/hash.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/thresholds.h"
+#include "fit/active_bounds.h"
+#include "fit/bounded_steps.h"
 
 namespace lacuna {
 namespace {
@@ -73,6 +75,28 @@ ResidualEvaluation FittedPart(const LinearisedMisfit& misfit) {
                                part.layout.count[static_cast<size_t>(row)] == 0;
   }
   return prediction;
+}
+
+// The quadratic model of a fit's cost about `at`, as a function of a step of the free values, from
+// a residual and its derivatives with respect to the parameters there.
+QuadraticCost CostAbout(const std::vector<CalibratedParameter>& parameters,
+                        const Eigen::VectorXd& at, const Eigen::VectorXd& residual,
+                        Eigen::MatrixXd columns) {
+  for (Eigen::Index k = 0; k < at.size(); ++k)
+    if (parameters[static_cast<size_t>(k)].log_scale) columns.col(k) *= at[k];
+  QuadraticCost model{0.5 * residual.squaredNorm(), columns.transpose() * residual,
+                      columns.transpose() * columns};
+  for (Eigen::Index k = 0; k < at.size(); ++k) {
+    const CalibratedParameter& parameter = parameters[static_cast<size_t>(k)];
+    const double deviation = parameter.prior_deviation;
+    if (!std::isfinite(deviation)) continue;
+    const double from_mean =
+        (ToFree(parameter, at[k]) - ToFree(parameter, PriorMeanOf(parameter))) / deviation;
+    model.cost += 0.5 * from_mean * from_mean;
+    model.gradient[k] += from_mean / deviation;
+    model.information(k, k) += 1 / (deviation * deviation);
+  }
+  return model;
 }
 
 // The null value of a parameter that makes the effect's size; nothing for another parameter.
@@ -145,6 +169,21 @@ std::vector<ParameterEstimate> ExtendedProblem::SizesIn(const Calibration& calib
   return sizes;
 }
 
+std::vector<bool> ExtendedProblem::SizesAtLimit(const Calibration& calibration) const {
+  std::vector<bool> at_limit;
+  for (size_t k = 0; k < effect_->candidate.amplitude.size(); ++k) {
+    const size_t at = static_cast<size_t>(shared_) + k;
+    const ParameterEstimate& estimate = calibration.estimates[at];
+    const double null = NullOf(*effect_, study_.fitted[at]).value_or(0);
+    // On a logarithmic scale, the effect almost vanishes at the lower end.
+    const double below = estimate.value - parameters_[at].min;
+    const double above = parameters_[at].max - estimate.value;
+    at_limit.push_back(estimate.determination == Determination::kAtBound &&
+                       (above < below ? parameters_[at].max > null : parameters_[at].min < null));
+  }
+  return at_limit;
+}
+
 std::vector<NamedEstimate> ExtendedProblem::OthersIn(const Calibration& calibration) const {
   std::vector<NamedEstimate> others;
   const size_t first = static_cast<size_t>(shared_) + effect_->candidate.amplitude.size();
@@ -163,10 +202,10 @@ ParameterEstimate ExtendedProblem::Reported(const Calibration& calibration, size
   return estimate;
 }
 
-Eigen::VectorXd ExtendedProblem::Start(const Eigen::VectorXd& refitted) const {
+FitStart ExtendedProblem::Start(const Eigen::VectorXd& refitted) const {
   const Eigen::VectorXd& values = baseline_.values;
-  const Eigen::VectorXd unchanged = PartWay(1, values);
-  if (effect_ == nullptr) return unchanged;
+  FitStart start{PartWay(1, values)};
+  if (effect_ == nullptr) return start;
   const double least_share = kThresholds.refit.least_modulus_share;
   // A linear prediction that takes a modulus to almost nothing or below holds for none of the
   // values, because they are predicted together.
@@ -177,44 +216,61 @@ Eigen::VectorXd ExtendedProblem::Start(const Eigen::VectorXd& refitted) const {
   const bool fails = std::ranges::any_of(std::views::iota(Eigen::Index{0}, shared_), is_far_below);
   const Eigen::VectorXd& expected = fails ? values : predicted;
   const double without = nuisances_.OfResidual(residual_).norm();
-  Eigen::VectorXd start = unchanged;
-  double least = ResidualNorm(start);
-  for (const double share : kStepShares) {
-    const Eigen::VectorXd at = PartWay(share, expected);
+  double least = kInfinity;
+  const auto try_at = [&](const Eigen::VectorXd& at) {
+    ++start.predictions;
     if (const double norm = ResidualNorm(at); norm < least) {
       least = norm;
-      start = at;
+      start.values = at;
     }
+  };
+  try_at(start.values);
+  for (const double share : kStepShares) {
+    // First order may predict the baseline's own values, which have been tried.
+    if (const Eigen::VectorXd at = PartWay(share, expected); at != start.values) try_at(at);
     if (least < without || effect_->candidate.IsPilot()) break;
   }
   for (const double share : kSharesBesideRefitted) {
     if (refitted.size() == 0) break;
-    const Eigen::VectorXd at = WithEffectBy(share, refitted);
-    if (const double norm = ResidualNorm(at); norm < least) {
-      least = norm;
-      start = at;
-    }
+    try_at(WithEffectBy(share, refitted));
     if (effect_->candidate.IsPilot()) break;
   }
   return start;
 }
 
-Eigen::VectorXd ExtendedProblem::StartAtFixedSize(const std::string& stage) const {
-  Eigen::VectorXd start;
+FitStart ExtendedProblem::StartAtFixedSize(const std::string& stage) const {
+  const int most = kThresholds.refit.most_predictions;
+  FitStart start;
   double least = kInfinity;
   for (const double share : kSizeShares) {
+    if (start.predictions >= most) break;
     const Eigen::VectorXd part_way = PartWay(share, baseline_.values);
-    Eigen::VectorXd at = start.size() > 0 ? start : part_way;
+    Eigen::VectorXd at = start.values.size() > 0 ? start.values : part_way;
     at.segment(shared_, added_) = part_way.segment(shared_, added_);
-    const Calibration fitted =
-        Fit(ParametersFrom(at, /*holds_effect=*/true), stage,
-            {.max_iterations = kHoldIterations, .cost_tolerance = kTolerance}, baseline_.progress)
-            .calibration;
-    if (fitted.estimates.empty() || fitted.rms >= least) continue;
+    // Far from the measurements is not hopeless here: the effect is kept from explaining them.
+    const Calibration fitted = Fit(ParametersFrom(at, /*holds_effect=*/true), stage,
+                                   {.max_iterations = kHoldIterations,
+                                    .cost_tolerance = kTolerance,
+                                    .max_predictions = most - start.predictions},
+                                   baseline_.progress)
+                                   .calibration;
+    start.predictions += fitted.predictions;
+    if (!fitted.HasSolution() || fitted.rms >= least) continue;
     least = fitted.rms;
-    start = fitted.parameters;
+    start.values = fitted.parameters;
   }
   return start;
+}
+
+FirstStep ExtendedProblem::FirstStepFrom(const Eigen::VectorXd& at,
+                                         const LinearisedMisfit& misfit) const {
+  const ResidualEvaluation there = FittedPart(misfit);
+  const std::vector<CalibratedParameter> parameters = ParametersFrom(at, /*holds_effect=*/false);
+  const QuadraticCost model =
+      CostAbout(parameters, at, nuisances_.OfResidual(there.residual),
+                nuisances_.OfDerivatives(there.jacobian.leftCols(at.size())));
+  const Eigen::VectorXd step = BoundedSteps(parameters).Step(model, at, kInfinity);
+  return {model.cost, model.cost * model.GainOf(step)};
 }
 
 std::vector<CalibratedParameter> ExtendedProblem::ParametersFrom(const Eigen::VectorXd& start,

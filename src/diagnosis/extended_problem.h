@@ -47,6 +47,18 @@ struct ExtendedFit {
   LinearisedMisfit misfit;
 };
 
+// Where a fit starts, and how many predictions were made to find that.
+struct FitStart {
+  Eigen::VectorXd values;
+  int predictions = 0;
+};
+
+// The cost at which a fit starts (Calibration::cost), and by how much its first step would reduce
+// it to first order.
+struct FirstStep {
+  double cost = 0, gain = 0;
+};
+
 // The baseline model with an effect and the adopted nuisances. The order of its parameters is:
 // those of the baseline study, those of the effect, and the nuisance parameters of the recordings.
 // The amounts of the adopted nuisances, which change the residual by the same columns as at the
@@ -69,17 +81,24 @@ class ExtendedProblem {
   // an error whose length is u σ, in the direction to which an estimate is most sensitive, moves it
   // by u of the standard deviations that noise alone gives it.
   std::vector<ParameterEstimate> SizesIn(const Calibration& calibration) const;
+  // Of the sizes: whether an estimate has ended at an end of its range at which the effect does not
+  // vanish, which is the limit of what is plausible.
+  std::vector<bool> SizesAtLimit(const Calibration& calibration) const;
   std::vector<NamedEstimate> OthersIn(const Calibration& calibration) const;
 
   // The start of a fit: the values that first order predicts to be the best, or a part of the way
   // to them, or the baseline's own values, whichever gives the smallest residual first. `refitted`:
   // the baseline's own parameters after a fit without the effect, or empty; the effect added to
   // these is the start where it gives a smaller residual.
-  Eigen::VectorXd Start(const Eigen::VectorXd& refitted = {}) const;
+  FitStart Start(const Eigen::VectorXd& refitted = {}) const;
   // The best start with the effect held near a given share of its predicted size and the other
-  // parameters fitted: their dependence on the size is not linear. Empty: no fit succeeded. Throws
-  // Interrupted.
-  Eigen::VectorXd StartAtFixedSize(const std::string& stage) const;
+  // parameters fitted: their dependence on the size is not linear. These fits together take at most
+  // RefitThresholds::most_predictions. No values: none succeeded. Throws Interrupted.
+  FitStart StartAtFixedSize(const std::string& stage) const;
+
+  // The first step of CalibrateFrom(at). `misfit`: there, with its Jacobian; columns beyond those
+  // of the parameters do not count. Nothing is predicted.
+  FirstStep FirstStepFrom(const Eigen::VectorXd& at, const LinearisedMisfit& misfit) const;
 
   // Fits all parameters. `hopeless_cost`: as in CalibrationOptions. May be called from several
   // threads. Throws Interrupted.

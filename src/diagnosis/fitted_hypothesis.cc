@@ -1,10 +1,12 @@
 #include "diagnosis/fitted_hypothesis.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "analysis/positive_normal.h"
 #include "fit/active_bounds.h"
 
 namespace lacuna {
@@ -22,6 +24,44 @@ std::vector<LinearPrior> WithoutMeans(std::vector<LinearPrior> priors) {
     prior.positive = false;
   }
   return priors;
+}
+
+// FittedHypothesis::positive of a problem with these parameters.
+std::vector<int> PositiveAmounts(const std::vector<CalibratedParameter>& parameters) {
+  std::vector<int> positive;
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const CalibratedParameter& parameter = parameters[k];
+    if (!parameter.log_scale && std::isfinite(parameter.prior_deviation) &&
+        parameter.min >= PriorMeanOf(parameter))
+      positive.push_back(static_cast<int>(k));
+  }
+  return positive;
+}
+
+// The logarithm of the factor by which truncated priors of the amounts that must be positive change
+// the evidence. `model`: of the whitened columns of the hypothesis. The covariance of the amounts
+// is v (S + v Q⁻¹)⁻¹, where S are their products after all other columns have been projected out
+// and Q is the covariance of their priors.
+double LogTruncation(const FittedHypothesis& hypothesis, const LinearGaussianModel& model,
+                     double variance) {
+  const std::vector<int>& positive = hypothesis.positive;
+  if (positive.empty()) return 0;
+  std::vector<int> others;
+  for (int k = 0; k < static_cast<int>(hypothesis.priors.size()); ++k)
+    if (std::count(positive.begin(), positive.end(), k) == 0) others.push_back(k);
+  Eigen::MatrixXd information = model.Remaining(others, positive, positive, variance) / variance;
+  const Eigen::Index count = information.rows();
+  Eigen::VectorXd amounts(count), deviations(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const LinearPrior& prior = hypothesis.priors[static_cast<size_t>(positive[k])];
+    amounts[k] = -prior.mean;  // priors are of changes from where the parameters are
+    deviations[k] = prior.deviation;
+  }
+  // In units of the deviations of the priors, in which the matrix is well scaled.
+  information = deviations.asDiagonal() * information * deviations.asDiagonal();
+  information += Eigen::MatrixXd::Identity(count, count);
+  return LogOrthantFactor(amounts.cwiseQuotient(deviations),
+                          information.ldlt().solve(Eigen::MatrixXd::Identity(count, count)));
 }
 
 // `misfit` with the residuals whitened as those of `correspondences`, which belong to other values
@@ -133,6 +173,7 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
   if (!hypothesis.misfit.usable) return hypothesis;
   hypothesis.priors = PriorsAbout(problem.parameters(), values);
   hypothesis.parameters = static_cast<Eigen::Index>(hypothesis.priors.size());
+  hypothesis.positive = PositiveAmounts(problem.parameters());
   if (near != nullptr) hypothesis.misfit.jacobian = near->misfit.jacobian;
   SetNuisances(adopted, correspondences, &hypothesis);
   return hypothesis;
@@ -158,13 +199,13 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
       prior_cost += std::pow((change - prior.mean) / prior.deviation, 2);
   }
   // With a residual of zero, the log evidence is the determinant term alone.
-  const LinearFit nothing = LinearGaussianModel(Eigen::VectorXd::Zero(residual.size()), columns,
-                                                WithoutMeans(hypothesis.priors))
-                                .FitAll(noise.variance);
+  const LinearGaussianModel of_nothing(Eigen::VectorXd::Zero(residual.size()), columns,
+                                       WithoutMeans(hypothesis.priors));
   HypothesisEvidence evidence;
   evidence.misfit = adopted.misfit;
-  evidence.log_evidence =
-      nothing.log_evidence - 0.5 * (evidence.misfit / noise.variance + prior_cost);
+  evidence.log_evidence = of_nothing.FitAll(noise.variance).log_evidence -
+                          0.5 * (evidence.misfit / noise.variance + prior_cost) +
+                          LogTruncation(hypothesis, of_nothing, noise.variance);
   return evidence;
 }
 

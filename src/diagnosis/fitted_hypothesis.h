@@ -21,12 +21,18 @@ struct FittedHypothesis {
   LinearisedMisfit misfit;          // columns: the problem's parameters, then the adopted nuisances
   std::vector<LinearPrior> priors;  // of the columns
   Eigen::Index parameters = 0;      // number of columns that are the problem's parameters
-  Eigen::VectorXd residual;         // m, with the best amounts of the adopted nuisances
+  // The columns of amounts that must be positive: of parameters on a linear scale whose prior has
+  // its mean at or below their lower bound. The prior is truncated at its mean.
+  std::vector<int> positive;
+  Eigen::VectorXd residual;  // m, with the best amounts of the adopted nuisances
 };
 
 // The log evidence of all frames of the fitted recordings, up to a constant that all hypotheses
 // share, at the parameters as they are. (The evidence of linear_evidence.h assumes their best
-// values to first order, and would reward a fit that has not converged.)
+// values to first order, and would reward a fit that has not converged.) Priors of amounts that
+// must be positive are truncated, and so is the posterior, whose mode is taken to be where the
+// parameters are: as to first order, such an amount that is determined well has ln 2 more than it
+// would have if it might be negative, and one at the bound has the same.
 struct HypothesisEvidence {
   double log_evidence = 0;
   double misfit = 0;  // ‖whitened residual‖², adopted nuisances at their best amounts

@@ -1,19 +1,26 @@
 // Unit motions of the grips, which are simulated along the fitted trajectory together with the
 // effects. Nuisances of grips are combinations of the changes that these motions cause.
 //
-// With X the rest position of a gripped node and X̄ the mean over its grip, a grip moves its nodes
-// by
-//   shift eᵢ, rotation eᵢ × (X − X̄)          (misplaced grip; 6 directions)
-//   −F, −M × (X − X̄)                          (compliant grip; 2 directions)
+// With x(t) the position at which a grip holds a node at time t, c(t) the mean of these over the
+// grip, X the rest position of the node and X̄ the mean of those, a grip moves its nodes by
+//   shift eᵢ, rotation eᵢ × (x − c)          (misplaced grip; 6 directions)
+//   −F, −M × (x − c)                          (compliant grip; 2 directions)
 //   (X − X̄)ⱼ eᵢ                               (deforming grip; 9 directions, i fastest)
-// where F and M are the resultant force and moment of the grip's reaction. Components along axes
-// along which the grip does not hold are 0.
+// where F and M = Σ (x − c) × f are the resultant force and moment of the grip's reaction. x
+// contains the fitted placement (prediction/grip_placement.h), and is X for a clamp without one.
+// Components along axes along which the grip does not hold are 0.
+//
+// Recordings share a grip if it holds the same nodes along the same axes in them: its unknown
+// amounts are then the same, while it holds these nodes where each recording says. A grip that only
+// some recordings have changes nothing in the others.
 #ifndef LACUNA_DIAGNOSIS_GRIP_MOTIONS_H_
 #define LACUNA_DIAGNOSIS_GRIP_MOTIONS_H_
 
 #include <Eigen/Core>
 #include <atomic>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,23 +44,29 @@ class LargestNorm {
 
 struct GripMotions {
   struct Grip {
-    size_t grip = 0;            // index in Model::grips
-    std::string label;          // "the grip", or "grip 2" if there are several
+    // Its index in Model::grips, by the index of each fitted recording that has it; not empty.
+    std::map<size_t, size_t> index_in;
+    // "the grip", or "grip 2" if there are several; with the name of its first recording where not
+    // all fitted recordings have it.
+    std::string label;
     Eigen::Index rigid = 0;     // the first of 6 directions: per m and per rad
     Eigen::Index yielding = 0;  // the first of 2 directions: per m/N and per rad/(N m)
     Eigen::Index strain = -1;   // the first of 9 directions, per unit strain; −1: does not deform
     // The largest force, N, and moment, N m, in all simulations of the directions.
     std::shared_ptr<LargestNorm> force, moment;
+
+    // Its index in Model::grips of a recording; none where the recording does not have it.
+    std::optional<size_t> In(size_t recording) const;
   };
-  std::vector<Grip> grips;                  // those that hold nodes
-  std::vector<MisfitDirection> directions;  // of all grips
+  std::vector<Grip> grips;  // those that hold nodes
+  std::vector<MisfitDirection> directions;
 };
 
-// The motions of the grips of the first recording's model.
+// The motions of the grips of all fitted recordings.
 GripMotions MakeGripMotions(const CalibrationProblem& problem);
 
 // The misfit of a problem with its derivatives with respect to the parameters, to further
-// directions and to the motions of the grips. Its Jacobian has these columns in this order.
+// directions and to the directions of the grips. Its Jacobian has these columns in this order.
 struct LinearisedWithGrips {
   GripMotions grips;  // with the forces and moments of the simulation
   LinearisedMisfit misfit;
@@ -63,7 +76,8 @@ struct LinearisedWithGrips {
   Eigen::MatrixXd OfDirections() const {
     return misfit.jacobian.middleCols(parameters, directions);
   }
-  Eigen::MatrixXd OfGrips() const {  // by grips.directions
+  // Changes of the rows by the directions of the grips.
+  Eigen::MatrixXd OfGrips() const {
     return misfit.jacobian.rightCols(misfit.jacobian.cols() - parameters - directions);
   }
 };

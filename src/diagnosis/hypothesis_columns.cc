@@ -85,7 +85,7 @@ ColumnsBuilder::ColumnsBuilder(const CalibrationProblem& problem, const Eigen::V
                       study.candidates, GrippedNodes(problem.models().front().model())});
   linearised_ = LineariseWithGrips(problem, values, DirectionsOf(all_.candidates));
   CHECK(linearised_.misfit.usable)
-      << "the fitted model could be predicted before: " << linearised_.misfit.message;
+      << "the fitted model could be predicted before, but not now: " << linearised_.misfit.message;
   grip_columns_ = linearised_.OfGrips();
 }
 
@@ -138,6 +138,7 @@ void ColumnsBuilder::AddNuisance(NuisanceCandidate candidate) {
     all_.untried.push_back(
         {candidate.card.name, fmt::format("{} has more than {} frames: thin them out with `every`",
                                           recording, kThresholds.nuisances.most_single_frames)});
+  if (!candidate.untried.empty()) all_.untried.push_back({candidate.card.name, candidate.untried});
   if (candidate.columns.cols() == 0) return;
   all_.of_nuisance.push_back(Add(candidate.columns, candidate.priors));
   if (candidate.card.is_always_in_model) all_.always = Joined(all_.always, all_.of_nuisance.back());
@@ -179,7 +180,9 @@ void ColumnsBuilder::AddRecordingNuisances() {
 }
 
 void ColumnsBuilder::AddUnknownForce() {
-  all_.unknown_force = UnknownForceColumns(problem_, all_.values, linearised_.misfit);
+  UnknownForce force = UnknownForceColumns(problem_, all_.values, linearised_.misfit);
+  all_.unknown_force = std::move(force.columns);
+  for (std::string& why : force.untried) all_.untried.push_back({"unknown force", std::move(why)});
 }
 
 void ColumnsBuilder::SetBase() {
@@ -190,10 +193,11 @@ void ColumnsBuilder::SetBase() {
 
 Eigen::VectorXd ColumnsBuilder::ResidualAfter(const std::vector<int>& chosen) const {
   const LinearisedMisfit& misfit = linearised_.misfit;
+  const Eigen::MatrixXd columns = all_.ColumnsOf(chosen);
   const LinearFit fit = LinearGaussianModel(WhitenedRows(misfit.residual, misfit),
-                                            WhitenedRows(all_.columns, misfit), all_.priors)
-                            .Fit(chosen, 1);
-  return misfit.residual + all_.columns(Eigen::all, chosen) * fit.change;
+                                            WhitenedRows(columns, misfit), all_.PriorsOf(chosen))
+                            .FitAll(1);
+  return misfit.residual + columns * fit.change;
 }
 
 HypothesisColumns ColumnsBuilder::Finish() && {

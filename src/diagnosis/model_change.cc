@@ -43,22 +43,6 @@ void LetMassesFall(const EffectList& before, EffectList* effects) {
   }
 }
 
-// The start of a fit of the effect.
-Eigen::VectorXd StartOf(const ScoredVariant& scored) {
-  const CandidateEffect& candidate = scored.candidate;
-  Eigen::VectorXd values = candidate.effect->Parameters();
-  for (size_t k = 0; k < candidate.amplitude.size(); ++k) {
-    const int index = candidate.amplitude[k];
-    const ParameterCard& parameter = candidate.effect->Card().parameters[index];
-    const double size = scored.score.size[static_cast<Eigen::Index>(k)];
-    // Not at the null value, where the other parameters have no influence.
-    double start = std::clamp(size, parameter.plausible_min, parameter.plausible_max);
-    if (start == parameter.null_value) start += 0.01 * PlausibleScale(parameter);
-    values[index] = start;
-  }
-  return values;
-}
-
 // Limits a parameter to its plausible range with a margin.
 void KeepPlausible(const ParameterCard& plausible, CalibratedParameter* prior) {
   const double range = plausible.plausible_max - plausible.plausible_min;
@@ -94,6 +78,21 @@ void KeepWithin(const CandidateEffect::Range& range, const Bounds& of_card,
 
 }  // namespace
 
+Eigen::VectorXd StartOfRefit(const ScoredVariant& scored) {
+  const CandidateEffect& candidate = scored.candidate;
+  Eigen::VectorXd values = candidate.effect->Parameters();
+  for (size_t k = 0; k < candidate.amplitude.size(); ++k) {
+    const int index = candidate.amplitude[k];
+    const ParameterCard parameter = candidate.CardOf(index);
+    const double size = parameter.null_value + scored.score.size[static_cast<Eigen::Index>(k)];
+    // Not at the null value, where the other parameters have no influence.
+    double start = std::clamp(size, parameter.plausible_min, parameter.plausible_max);
+    if (start == parameter.null_value) start += 0.01 * PlausibleScale(parameter);
+    values[index] = start;
+  }
+  return values;
+}
+
 PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffect& candidate) {
   PredictionStudy with = study;
   if (candidate.replaces_material) {
@@ -107,15 +106,17 @@ PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffec
 
 PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& scored) {
   CandidateEffect own = scored.candidate;
-  own.effect = own.effect->WithParameters(StartOf(scored));
+  own.effect = own.effect->WithParameters(StartOfRefit(scored));
   PredictionStudy with = WithCandidate(study, own);
   if (own.replaces_material) return with;
   for (ModelParameter& parameter : ModelParameters(with.effects)) {
     if (parameter.places.front().effect + 1 == with.effects.size()) {
       const int index = parameter.places.front().index;
-      const ParameterCard& card = own.effect->Card().parameters[index];
+      const ParameterCard card = own.CardOf(index);
       CalibratedParameter& prior = parameter.prior;
       if (!IsMovedByRefit(own, static_cast<size_t>(index))) continue;
+      if (own.prior_centre.size() > 0 && (!prior.log_scale || own.prior_centre[index] > 0))
+        prior.prior_mean = own.prior_centre[index];
       if (own.IsPilot()) prior.prior_deviation = own.refined.at(card.name);
       const bool is_amplitude = std::count(own.amplitude.begin(), own.amplitude.end(), index) > 0;
       if (is_amplitude && !prior.log_scale) {

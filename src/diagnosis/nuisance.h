@@ -79,6 +79,8 @@ struct NuisanceCandidate {
   // The names of the recordings that C leaves out because they have more frames than
   // NuisanceThresholds::most_single_frames. If C has no columns, the nuisance cannot be tried.
   std::vector<std::string> left_out = {};
+  // Why the nuisance cannot be tried, although it applies: C has no columns then. Empty: it can.
+  std::string untried = "";
 };
 
 }  // namespace lacuna

@@ -14,7 +14,7 @@ NuisanceCard Card() {
   card.title = "a single frame";
   card.directions = "the frame with the largest residual shifted and rotated";
   card.prior = "1 mm and 0.02 rad";
-  card.residual_when_present = "One frame is displaced like a rigid body, its neighbours are not.";
+  card.residual_when_present = "One frame is displaced like a rigid body; its neighbours are not.";
   card.advice = "leave that frame out, or measure it again";
   card.acts_on_single_frames = true;
   card.trial.control = "bad_frame";

@@ -84,7 +84,7 @@ std::vector<NuisanceCandidate> Made(const std::vector<const NuisanceEntry*>& ent
   ForEachStudy(context.problem, static_cast<int64_t>(entries.size()), [&](int64_t k) {
     const size_t at = static_cast<size_t>(k);
     const auto same = std::find_if(known.begin(), known.end(), [&](const NuisanceCandidate& other) {
-      return other.card.name == entries[at]->card.name;
+      return other.card.name == entries[at]->card.name && other.untried.empty();
     });
     made[at] = same != known.end() ? *same : std::get<ModelNuisance>(entries[at]->make)(context);
   });
@@ -143,6 +143,13 @@ std::vector<NuisanceCandidate> RecordingNuisances(const CalibrationProblem& prob
     });
   }
   return candidates;
+}
+
+NuisanceCandidate Untried(const NuisanceContext& context, const std::string& why) {
+  NuisanceCandidate candidate;
+  candidate.columns.resize(context.misfit.residual.size(), 0);
+  candidate.untried = why;
+  return candidate;
 }
 
 std::vector<LinearPrior> RigidMotionPriors() {

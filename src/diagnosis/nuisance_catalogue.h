@@ -49,12 +49,17 @@ struct RecordingContext {
   double RigidChange(Eigen::Index frame, int series, int axis) const;
 };
 
+// A nuisance that cannot be simulated: without columns, with the reason, a part of a sentence.
+NuisanceCandidate Untried(const NuisanceContext& context, const std::string& why);
+
 // The priors of three shifts and three rotations of something that may be misplaced.
 std::vector<LinearPrior> RigidMotionPriors();
 
 // The makers fill everything but the card, which comes from the entry; without a result the
-// nuisance does not apply or cannot be simulated. A candidate without columns says which recordings
-// have too many frames for it (NuisanceCandidate::left_out). A maker may throw Interrupted.
+// nuisance does not apply. A candidate without columns says why it cannot be simulated (Untried()),
+// or which recordings have too many frames for it (NuisanceCandidate::left_out). A nuisance of
+// every model must not vanish in silence: without it, the hypotheses claim more than is known. A
+// maker may throw Interrupted.
 using ModelNuisance = std::optional<NuisanceCandidate> (*)(const NuisanceContext& context);
 using GripNuisance = NuisanceCandidate (*)(const GripMotions::Grip& grip,
                                            const Eigen::MatrixXd& grip_columns);
@@ -76,8 +81,8 @@ std::vector<NuisanceTrial> NuisanceControls();
 
 // The nuisances of the model: what a finer mesh and a shorter step change beyond what the
 // parameters can compensate for, the object's dimensions, the noise of the grips' markers, and the
-// extent of the grips. Those that are in `known`, by the names of their cards, are taken from
-// there.
+// extent of the grips. Those that are in `known`, by the names of their cards, and were simulated,
+// are taken from there.
 std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
                                               const std::vector<NuisanceCandidate>& known = {});
 // The nuisances of ModelNuisances() that all rankings of one scene share

@@ -58,45 +58,60 @@ Eigen::Vector3d Inwards(const Eigen::Matrix3Xd& nodes, const Eigen::VectorXi& gr
   return nodes.rowwise().mean() - nodes(Eigen::all, gripped).rowwise().mean();
 }
 
-// Whether the extent of a grip can be changed: it holds its nodes along all axes, by the same nodes
-// in all recordings, and has an inward direction. A grip that follows a scan would be registered
-// anew with the changed mesh.
-bool HasExtent(const CalibrationProblem& problem, size_t grip) {
-  const Eigen::Matrix3Xd& nodes = problem.body()->mesh.nodes;
-  const auto& first = problem.models().front().model().grips[grip];
-  const Eigen::Vector3d size = nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff();
-  if (!(Inwards(nodes, first.nodes).norm() > kCentral * size.norm())) return false;
-  return std::all_of(problem.models().begin(), problem.models().end(),
-                     [&](const RecordingModel& model) {
-                       const auto& grips = model.model().grips;
-                       const RecordedGrip* recorded = RecordedAs(model.measured(), grip);
-                       const bool follows_scan =
-                           recorded != nullptr && recorded->motion == GripMotion::kFollowsScan;
-                       return grip < grips.size() && grips[grip].nodes == first.nodes &&
-                              grips[grip].axes.IsAll() && !follows_scan;
-                     });
+// The nodes that a grip holds.
+const Eigen::VectorXi& NodesOf(const CalibrationProblem& problem, const GripMotions::Grip& grip) {
+  const auto& [recording, index] = *grip.index_in.begin();
+  return problem.models()[recording].model().grips[index].nodes;
 }
 
-// Where the nodes are once the grip reaches further by `distance`, m.
-Eigen::Matrix3Xd WithLongerGrip(const CalibrationProblem& problem, size_t grip, double distance) {
+bool HoldsExactly(const Grip& grip, const Eigen::VectorXi& nodes) {
+  return grip.nodes.size() == nodes.size() && grip.nodes == nodes;
+}
+
+// Whether a model holds these nodes together along all axes, and not where a scan shows them: a
+// grip that follows a scan would be registered anew with the changed mesh.
+bool HoldsFirmly(const RecordingModel& model, const Eigen::VectorXi& nodes) {
+  const std::vector<Grip>& grips = model.model().grips;
+  for (size_t g = 0; g < grips.size(); ++g) {
+    if (!HoldsExactly(grips[g], nodes) || !grips[g].axes.IsAll()) continue;
+    const RecordedGrip* recorded = RecordedAs(model.measured(), g);
+    return recorded == nullptr || recorded->motion != GripMotion::kFollowsScan;
+  }
+  return false;
+}
+
+// Whether the extent of a grip can be changed: it holds its nodes along all axes in all recordings,
+// and has an inward direction.
+bool HasExtent(const CalibrationProblem& problem, const Eigen::VectorXi& gripped) {
   const Eigen::Matrix3Xd& nodes = problem.body()->mesh.nodes;
-  const auto& grips = problem.models().front().model().grips;
-  const Eigen::Vector3d inwards = Inwards(nodes, grips[grip].nodes).normalized();
+  const Eigen::Vector3d size = nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff();
+  if (!(Inwards(nodes, gripped).norm() > kCentral * size.norm())) return false;
+  return std::all_of(problem.models().begin(), problem.models().end(),
+                     [&](const RecordingModel& model) { return HoldsFirmly(model, gripped); });
+}
+
+// Where the nodes are once the grip of `gripped` reaches further by `distance`, m. The nodes of the
+// other grips of all recordings stay.
+Eigen::Matrix3Xd WithLongerGrip(const CalibrationProblem& problem, const Eigen::VectorXi& gripped,
+                                double distance) {
+  const Eigen::Matrix3Xd& nodes = problem.body()->mesh.nodes;
+  const Eigen::Vector3d inwards = Inwards(nodes, gripped).normalized();
   const Eigen::RowVectorXd along = inwards.transpose() * nodes;
-  const double end = along(grips[grip].nodes).maxCoeff();
+  const double end = along(gripped).maxCoeff();
   Eigen::RowVectorXd share = 1 - ((along.array() - end) / (along.maxCoeff() - end)).max(0).min(1);
-  for (size_t other = 0; other < grips.size(); ++other)
-    if (other != grip) share(grips[other].nodes).setZero();
+  for (const RecordingModel& model : problem.models())
+    for (const Grip& other : model.model().grips)
+      if (!HoldsExactly(other, gripped)) share(other.nodes).setZero();
   return nodes + distance * inwards * share;
 }
 
 // The residual of the model with the mesh that a longer grip leaves, m. Empty where it cannot be
 // simulated.
-Eigen::VectorXd ResidualWith(const CalibrationProblem& problem, size_t grip, double distance,
-                             const Eigen::VectorXd& values, const PredictionStudy& study,
-                             const LinearisedMisfit& near) {
+Eigen::VectorXd ResidualWith(const CalibrationProblem& problem, const Eigen::VectorXi& gripped,
+                             double distance, const Eigen::VectorXd& values,
+                             const PredictionStudy& study, const LinearisedMisfit& near) {
   TetMesh mesh = problem.body()->mesh;
-  mesh.nodes = WithLongerGrip(problem, grip, distance);
+  mesh.nodes = WithLongerGrip(problem, gripped, distance);
   std::unique_ptr<const CalibrationProblem> changed;
   try {
     changed = std::make_unique<const CalibrationProblem>(study, mesh);
@@ -110,12 +125,13 @@ Eigen::VectorXd ResidualWith(const CalibrationProblem& problem, size_t grip, dou
 // that keep the motion in phase. First a tangent; then, since the column should hold at the extent
 // that the recordings suggest, the chord to there or, where that cannot be simulated, to half or a
 // quarter of it. The suggestion is that of a fit beside the parameters alone.
-Eigen::VectorXd ColumnOf(size_t grip, const PredictionStudy& study, const NuisanceContext& at) {
+Eigen::VectorXd ColumnOf(const Eigen::VectorXi& gripped, const PredictionStudy& study,
+                         const NuisanceContext& at) {
   const double deviation = kThresholds.nuisances.shift;
   const Eigen::VectorXd& residual = at.misfit.residual;
   const auto change_by = [&](double distance, const Eigen::VectorXd& values) -> Eigen::VectorXd {
     const Eigen::VectorXd there =
-        ResidualWith(at.problem, grip, distance, values, study, at.misfit);
+        ResidualWith(at.problem, gripped, distance, values, study, at.misfit);
     return there.size() == residual.size() ? there - residual : Eigen::VectorXd();
   };
   const Eigen::VectorXd tangent = change_by(kProbe * deviation, at.values);
@@ -151,8 +167,9 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   NuisanceCandidate candidate;
   candidate.columns.resize(at.misfit.residual.size(), 0);
   for (const GripMotions::Grip& grip : at.grips.grips) {
-    if (!HasExtent(at.problem, grip.grip)) continue;
-    const Eigen::VectorXd column = ColumnOf(grip.grip, study, at);
+    const Eigen::VectorXi& gripped = NodesOf(at.problem, grip);
+    if (!HasExtent(at.problem, gripped)) continue;
+    const Eigen::VectorXd column = ColumnOf(gripped, study, at);
     if (column.size() == 0) continue;
     candidate.columns.conservativeResize(Eigen::NoChange, candidate.columns.cols() + 1);
     candidate.columns.rightCols(1) = column;

@@ -20,9 +20,9 @@ NuisanceCard Card() {
   card.name = "mesh";
   card.title = "the size of the elements";
   card.directions =
-      "the change of the prediction with finer (of large meshes: coarser) elements, and with "
-      "elements of twice the volume, "
-      "each with parameters that compensate for as much as they can";
+      "the change of the prediction with finer (for large meshes: coarser) elements, and with "
+      "elements of twice the volume, each with parameters that compensate for as much as they "
+      "can";
   card.prior = "the extrapolation to infinitely fine elements, and how far it is uncertain";
   card.residual_when_present =
       "A coarse mesh is too stiff where strains vary, near clamps above all, so its residual looks "
@@ -41,11 +41,13 @@ NuisanceCard Card() {
 std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   const std::optional<OtherMesh> mesh =
       MakeOtherMesh(at.problem, at.values, at.misfit, at.other_mesh);
-  if (!mesh) return std::nullopt;
+  if (!mesh)
+    return Untried(at, "no other mesh could be made, or the motion could not be predicted on it");
   // Between the finest mesh, which is the other or the model's own, and the other.
   const double halfway = mesh->IsFiner() ? mesh->ratio / 2 : 0.5;
   const Eigen::VectorXd between = ResidualAtRatio(at.problem, at.values, *mesh, halfway);
-  if (between.size() != mesh->other.size()) return std::nullopt;
+  if (between.size() != mesh->other.size())
+    return Untried(at, "the motion could not be predicted with elements of twice the volume");
   NuisanceCandidate candidate;
   candidate.columns.resize(between.size(), 2);
   candidate.columns << mesh->other - mesh->own,

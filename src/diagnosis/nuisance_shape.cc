@@ -24,9 +24,11 @@ NuisanceCard Card() {
 }
 
 std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
+  if (at.problem.study().size_deviation == 0) return std::nullopt;  // they are known exactly
   NuisanceCandidate candidate;
   const Eigen::MatrixXd changes = ChangesBySize(at.problem, at.values, at.misfit);
-  if (changes.cols() == 0) return std::nullopt;
+  if (changes.cols() == 0)
+    return Untried(at, "the motion of a larger object could not be predicted");
   candidate.columns =
       ParameterResponse(at.problem, at.values, at.misfit, /*fitted_only=*/false).InPhase(changes);
   candidate.priors.assign(3, {0, 1, false});

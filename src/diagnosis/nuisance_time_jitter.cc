@@ -1,5 +1,6 @@
 // An independent error in the time of each frame.
 #include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/single_frame_columns.h"
 #include "diagnosis/thresholds.h"
 
 namespace lacuna {
@@ -22,14 +23,29 @@ NuisanceCard Card() {
   return card;
 }
 
+bool HasTooManyFrames(const LinearisedMisfit::Part& points) {
+  return points.layout.times.size() > kThresholds.nuisances.most_single_frames;
+}
+
+// The number of columns for all recordings.
+Eigen::Index AllColumns(const LinearisedMisfit& misfit) {
+  size_t columns = 0;
+  for (const LinearisedMisfit::Part& part : misfit.parts)
+    if (part.IsOfPoints() && !HasTooManyFrames(part)) columns += part.layout.times.size();
+  return static_cast<Eigen::Index>(columns);
+}
+
 std::optional<NuisanceCandidate> Make(const RecordingContext& at) {
   NuisanceCandidate candidate;
   candidate.what = "the times of single frames of " + at.Name();
-  if (at.part.layout.times.size() > kThresholds.nuisances.most_single_frames) {
+  const Eigen::Index rows = at.misfit.residual.size();
+  if (HasTooManyFrames(at.part)) {
     candidate.left_out = {at.Name()};
     return candidate;
   }
-  candidate.columns.resize(at.misfit.residual.size(), at.Frames());
+  candidate.untried = WhyTooLarge(rows, AllColumns(at.misfit));
+  if (!candidate.untried.empty()) return candidate;
+  candidate.columns.resize(rows, at.Frames());
   for (Eigen::Index own = 0; own < at.Frames(); ++own)
     candidate.columns.col(own) = at.Column([&](Eigen::Index frame, int series) {
       return frame == own ? at.part.speed[frame * at.part.layout.series + series] : 0.0;

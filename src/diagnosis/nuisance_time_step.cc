@@ -28,7 +28,7 @@ NuisanceCard Card() {
 
 std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   const std::optional<StepErrors> errors = FindStepErrors(at.problem, at.values, at.misfit);
-  if (!errors) return std::nullopt;
+  if (!errors) return Untried(at, "the motion could not be predicted with a shorter step");
   NuisanceCandidate candidate;
   candidate.columns.resize(errors->to_limit.size(), 2);
   candidate.columns << errors->to_limit, errors->departure;

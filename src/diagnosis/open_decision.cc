@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "diagnosis/combinations.h"
+#include "diagnosis/decision.h"
 #include "diagnosis/decision_maker.h"
 #include "diagnosis/decision_rules.h"
 #include "diagnosis/nuisance_refits.h"
@@ -29,10 +30,11 @@ constexpr int kMostSteps = 4;
 constexpr int kMostRivalPairs = 3;
 
 // The effects that the hypotheses of a statement contain, but that were not refitted.
-std::vector<size_t> WithoutRefit(const Decision& decision, const RefittedRanking& ranked) {
+std::vector<size_t> WithoutRefit(const std::vector<HypothesisProbability>& posterior,
+                                 const RefittedRanking& ranked) {
   std::vector<size_t> effects;
-  for (const size_t k : NameFrom(decision.record.probabilities).kept)
-    for (const std::string& name : decision.record.probabilities[k].names)
+  for (const size_t k : NameFrom(posterior).kept)
+    for (const std::string& name : posterior[k].names)
       for (size_t e = 0; e < ranked.effects.size(); ++e)
         if (ranked.effects[e].scored.candidate.type == name && !ranked.effects[e].refitted)
           effects.push_back(e);
@@ -81,9 +83,9 @@ void OpenDecision::DecideAgain() {
   for (;;) {
     WeighNuisances(ranked, noise, &nuisances);
     input = MakeDecisionInput(context, ranked, noise, nuisances);
-    decision = Decide(input);
+    posterior = PosteriorOf(input);
     const int before = ranked.count;
-    RefitAll(context, WithoutRefit(decision, ranked), &ranked);
+    RefitAll(context, WithoutRefit(posterior, ranked), &ranked);
     if (ranked.count == before) return;
     noise = WeighRefits(context, &ranked);
   }

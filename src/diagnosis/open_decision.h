@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/decision.h"
 #include "diagnosis/decision_input.h"
 #include "diagnosis/refitted_ranking.h"
 #include "diagnosis/scored_effect.h"
 #include "diagnosis/variant_refit.h"
+#include "record/decision_record.h"
 
 namespace lacuna {
 
@@ -24,11 +24,11 @@ struct OpenDecision {
   std::vector<ScoredNuisance> nuisances;
   // Set by DecideAgain().
   DecisionInput input = {};
-  Decision decision = {};
+  std::vector<HypothesisProbability> posterior = {};  // PosteriorOf(input)
 
-  const HypothesisProbability& Best() const { return decision.record.probabilities.front(); }
-  // Decides upon what has been fitted, and refits what the decision would state without a refit,
-  // and so on: only refits are believed. Throws Interrupted, as do the functions below.
+  const HypothesisProbability& Best() const { return posterior.front(); }
+  // Weighs what has been fitted, and refits what would be stated without a refit, and so on: only
+  // refits are believed. Throws Interrupted, as do the functions below.
   void DecideAgain();
 };
 

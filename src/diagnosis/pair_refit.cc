@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/progress.h"
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/nuisance_catalogue.h"
@@ -40,15 +41,24 @@ std::vector<NuisanceCandidate> NuisancesAlong(const CalibrationProblem& problem,
   return SceneNuisances({held, values, misfit, MakeGripMotions(held), {}});
 }
 
+// The scene along the motion with the effect. A nuisance that cannot be simulated there keeps the
+// columns of the fitted motion, which `progress` says.
 SceneColumns OtherScene(const SceneColumns& of_baseline, const ScoredVariant& effect,
-                        std::vector<NuisanceCandidate> nuisances) {
+                        std::vector<NuisanceCandidate> nuisances, Progress* progress) {
   SceneColumns scene = of_baseline;
-  // One that cannot be simulated along this motion stays as it was.
-  for (const NuisanceCandidate& before : of_baseline.nuisances)
-    if (std::none_of(nuisances.begin(), nuisances.end(), [&](const NuisanceCandidate& nuisance) {
-          return nuisance.card.name == before.card.name;
-        }))
-      nuisances.push_back(before);
+  std::erase_if(nuisances,
+                [](const NuisanceCandidate& nuisance) { return nuisance.columns.cols() == 0; });
+  for (const NuisanceCandidate& before : of_baseline.nuisances) {
+    const bool is_new = std::any_of(
+        nuisances.begin(), nuisances.end(),
+        [&](const NuisanceCandidate& nuisance) { return nuisance.card.name == before.card.name; });
+    if (is_new) continue;
+    nuisances.push_back(before);
+    if (before.columns.cols() == 0) continue;
+    progress->Begin("columns of " + before.card.name, 0);
+    progress->End("as along the motion without " + effect.candidate.type +
+                  ", because they cannot be simulated along that with it");
+  }
   scene.nuisances = std::move(nuisances);
   if (effect.candidate.IsPilot()) scene.pilots.reset();
   return scene;
@@ -67,10 +77,10 @@ EffectRanking RankAlong(const BaselineModel& baseline, const ScoredVariant& effe
   const CalibrationProblem problem(study, baseline.problem.body()->mesh);
   const Eigen::Index shared = static_cast<Eigen::Index>(baseline.problem.study().fitted.size());
   const Eigen::Index own = static_cast<Eigen::Index>(study.fitted.size()) - shared;
-  return RankEffects(
-      problem, refit.values_at_fit, baseline.progress, without,
-      OtherScene(decided.ranking.scene, effect, NuisancesAlong(problem, refit, {shared, own})),
-      &decided);
+  return RankEffects(problem, refit.values_at_fit, baseline.progress, without,
+                     OtherScene(decided.ranking.scene, effect,
+                                NuisancesAlong(problem, refit, {shared, own}), baseline.progress),
+                     &decided);
 }
 
 std::optional<FittedPair> FitPair(const BaselineModel& baseline, const ScoredVariant& first,

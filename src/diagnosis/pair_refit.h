@@ -21,8 +21,9 @@ namespace lacuna {
 
 // Everything but the types in `without`, ranked along the motion of the refit of `effect`, with the
 // nuisances that `decided`, the baseline's ranking, has adopted. The effect keeps its size in the
-// columns. Pilots are simulated again only if the effect is one of them, so that it does not stand
-// beside itself. Throws Interrupted.
+// columns. A nuisance that cannot be simulated along that motion keeps its columns along the
+// baseline's, which the progress says. Pilots are simulated again only if the effect is one of
+// them, so that it does not stand beside itself. Throws Interrupted.
 EffectRanking RankAlong(const BaselineModel& baseline, const ScoredVariant& effect,
                         const EffectRefit& refit, const std::vector<std::string>& without,
                         const DecidedBase& decided);

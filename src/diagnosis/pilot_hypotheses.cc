@@ -88,7 +88,8 @@ PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::Vector
     for (const ProposedPlane& plane : planes) candidates.push_back(Contact(plane, stiffness, 0));
     if (planes.empty())
       pilots.untried.push_back(
-          {contact, "the predicted body crosses no plane that the measured one stays behind"});
+          {contact,
+           "there is no plane that the predicted body crosses and the measured one does not"});
     else
       candidates.push_back(Contact(planes.front(), stiffness, kThresholds.pilots.friction));
   }

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "diagnosis/thresholds.h"
 #include "effects/gravity.h"
 #include "fem/prediction.h"
+#include "geometry/nearest.h"
 
 namespace lacuna {
 namespace {
@@ -89,21 +91,33 @@ Eigen::MatrixXd DirectionsToTry(const PredictionStudy& study,
   return all;
 }
 
-// For each node the measured points, the nearest at rest first.
-std::vector<std::vector<int>> PointsNear(const std::vector<int>& nodes,
-                                         const Eigen::Matrix3Xd& rest,
-                                         const Eigen::Matrix3Xd& places) {
-  std::vector<std::vector<int>> near;
-  for (const int node : nodes) {
-    std::vector<std::pair<double, int>> order;
-    for (Eigen::Index i = 0; i < places.cols(); ++i)
-      order.emplace_back((places.col(i) - rest.col(node)).squaredNorm(), static_cast<int>(i));
-    std::sort(order.begin(), order.end());
-    near.emplace_back();
-    for (const auto& [distance, point] : order) near.back().push_back(point);
+// For each node the measured point that is nearest at rest, among those that a frame shows.
+class NearestPoints {
+ public:
+  // `nodes` and `points`: positions at rest, m.
+  NearestPoints(Eigen::Matrix3Xd nodes, Eigen::Matrix3Xd points)
+      : nodes_(std::move(nodes)), points_(std::move(points)) {}
+
+  // The nearest points of a frame with these displacements (3 × points, NaN where a point was not
+  // observed); nothing if none was observed. Valid until the next call.
+  const Eigen::RowVectorXi& In(const Eigen::Ref<const Eigen::Matrix3Xd>& displacements) {
+    std::vector<int> observed;
+    for (Eigen::Index point = 0; point < points_.cols(); ++point)
+      if (!displacements.col(point).hasNaN()) observed.push_back(static_cast<int>(point));
+    if (observed == observed_) return nearest_;
+    observed_ = std::move(observed);
+    nearest_.resize(0);
+    if (observed_.empty()) return nearest_;
+    nearest_ = PointSearch(points_(Eigen::all, observed_)).Nearest(nodes_).index.row(0);
+    for (int& point : nearest_) point = observed_[static_cast<size_t>(point)];
+    return nearest_;
   }
-  return near;
-}
+
+ private:
+  const Eigen::Matrix3Xd nodes_, points_;
+  std::vector<int> observed_;  // those among which nearest_ was found
+  Eigen::RowVectorXi nearest_;
+};
 
 void AddBody(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
              const Eigen::Matrix3Xd& displacements, Reach* reach) {
@@ -112,8 +126,7 @@ void AddBody(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
   std::vector<int> nodes;
   for (const int node : model.body->boundary.node)
     if (!gripped[static_cast<size_t>(node)]) nodes.push_back(node);
-  const std::vector<std::vector<int>> near =
-      PointsNear(nodes, model.body->mesh.nodes, recording.observer().Places());
+  NearestPoints near(model.body->mesh.nodes(Eigen::all, nodes), recording.observer().Places());
   const Eigen::Index points = recording.PointCount();
   std::vector<double> times;
   for (const int frame : recording.recording().frames)
@@ -121,16 +134,14 @@ void AddBody(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
   const Model placed = recording.PlacedModel(nuisance);
   const PredictionSummary summary = Predict(
       placed, recording.Options(nuisance), times, {}, [&](int frame, const PredictedState& state) {
-        for (size_t k = 0; k < nodes.size(); ++k) {
-          for (const int point : near[k]) {
-            const auto displacement = displacements.col(frame * points + point);
-            if (displacement.hasNaN()) continue;
-            reach->Add(state.position.segment<3>(3 * nodes[k]), displacement);
-            break;
-          }
-        }
+        const auto seen = displacements.middleCols(frame * points, points);
+        const Eigen::RowVectorXi& nearest = near.In(seen);
+        for (Eigen::Index k = 0; k < nearest.size(); ++k)
+          reach->Add(state.position.segment<3>(3 * nodes[static_cast<size_t>(k)]),
+                     seen.col(nearest[k]));
       });
-  CHECK(summary.IsUsable()) << "could be predicted before: " << summary.message;
+  CHECK(summary.IsUsable()) << "the fitted model could be predicted before, but not now: "
+                            << summary.message;
 }
 
 }  // namespace

@@ -31,9 +31,6 @@ class HypothesisScorer {
   // beside them.
   void ScoreAndAdopt(int most);
 
-  // The columns of everything in the model: those of HypothesisColumns::base, then the adopted
-  // ones.
-  const std::vector<int>& Base() const { return base_; }
   AdoptedNuisances Adopted() const;
   std::vector<ScoredEffect> Effects() const;  // the most evidence first
   const std::vector<ScoredEffect>& WithoutAdopted() const { return without_adopted_; }
@@ -61,6 +58,8 @@ class HypothesisScorer {
 
   const HypothesisColumns& all_;
   const WeighedColumns weighed_;
+  // The columns of everything in the model: those of HypothesisColumns::base, then the adopted
+  // ones.
   std::vector<int> base_;
   std::vector<NuisanceScore> nuisances_;  // of HypothesisColumns::nuisances
   std::vector<Score> scores_;             // of HypothesisColumns::candidates
@@ -254,8 +253,6 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
   ranking.untried = std::move(all.untried);
   ranking.scene = std::move(all.scene);
   ranking.unknown_force = std::move(all.unknown_force);
-  ranking.space = SpaceBeside(all.misfit, all.ColumnsOf(scorer.Base()), all.PriorsOf(scorer.Base()),
-                              ranking, {}, ranking.noise);
   ranking.agreement =
       CompareRecordings(problem, values, all.misfit, ranking.adopted, ranking.noise);
   all.misfit.jacobian.resize(0, 0);

@@ -11,12 +11,16 @@ RecordedInterval IntervalOf(const ParameterEstimate& estimate) {
 
 std::vector<RecordedSize> SizesOf(const RankedEffect& effect) {
   const Score& score = effect.scored.score;
+  const std::vector<CandidateAmount> amounts = AmountsOf(effect.scored.candidate);
   std::vector<RecordedSize> sizes;
   for (size_t k = 0; k < effect.scored.parameters.size(); ++k) {
     const Eigen::Index at = static_cast<Eigen::Index>(k);
     sizes.push_back({effect.scored.parameters[k], effect.scored.units[k], score.size[at],
                      score.deviation[at], score.detectable[at], std::nullopt});
-    if (k < effect.sizes.size()) sizes.back().refitted = IntervalOf(effect.sizes[k]);
+    if (!effect.scored.candidate.IsPilot()) sizes.back().plausible = amounts.at(k).plausible;
+    if (k >= effect.sizes.size()) continue;
+    sizes.back().refitted = IntervalOf(effect.sizes[k]);
+    sizes.back().at_limit = k < effect.at_limit.size() && effect.at_limit[k];
   }
   return sizes;
 }
@@ -27,6 +31,7 @@ RecordedRefit RefitOf(const RankedEffect& effect) {
   refit.unconverged = effect.unconverged;
   refit.evidence = effect.evidence;
   refit.held_out_evidence = effect.held_out_evidence;
+  refit.fails_at_limit = effect.fails_at_limit;
   refit.explained = effect.explained;
   refit.removed = effect.removed;
   refit.rms_over_sigma = effect.rms_over_sigma;

@@ -42,6 +42,30 @@ EffectRefit RefitBeside(const RefitSetting& setting, const ScoredVariant& varian
       setting, &variant, RefitFromValues(setting, &variant, values, hopeless_cost), hopeless_cost);
 }
 
+bool AreOfOneFamily(const RankedEffect& a, const RankedEffect& b) {
+  const auto &one = a.scored.candidate.effect, &other = b.scored.candidate.effect;
+  return one != nullptr && other != nullptr && one->Card().family == other->Card().family &&
+         one->Card().family != EffectFamily::kOther;
+}
+
+bool IsBeatenToFirstOrder(const RefittedRanking& ranked, size_t effect) {
+  // First order may underrate a rival as much as it has underrated the best effect.
+  const std::optional<BestRefit>& best = ranked.best;
+  const double of_best = best ? best->evidence - best->underrated : 0;
+  const double lead = of_best - ranked.effects[effect].scored.score.evidence;
+  return lead > DecisiveLead(ranked.BestEvidence());
+}
+
+bool IsBeaten(const RefittedRanking& ranked, size_t effect) {
+  // A derivative may give no evidence for a member of the best effect's family that is missing; a
+  // pilot has been simulated at a finite size.
+  const std::optional<BestRefit>& best = ranked.best;
+  if (best && AreOfOneFamily(ranked.effects[effect], ranked.effects[best->effect]) &&
+      !ranked.effects[effect].scored.candidate.IsPilot())
+    return false;
+  return IsBeatenToFirstOrder(ranked, effect);
+}
+
 // Refits an effect from its variants in another ranking, `early` (null: in its own), and keeps the
 // better refit where it has one already. Does nothing if it has none and no further effect may be
 // refitted.
@@ -56,33 +80,18 @@ void RefitOne(const RefitContext& context, size_t effect, const ScoredEffect* ea
   const bool is_found = best && RmsOverSigma(ranked->refits[best->effect].hypothesis) <=
                                     kThresholds.refit.rms_at_noise;
   const BaselineModel model = ModelOf(context, *ranked, context.model.progress);
+  // The early part of the motion is ranked where first order may mislead over the whole.
+  const RivalRefit rival{
+      HopelessCost(*ranked, best ? std::optional(best->effect) : std::nullopt,
+                   context.ranking.noise),
+      /*is_far_ahead=*/best && early == nullptr && IsBeatenToFirstOrder(*ranked, effect)};
   VariantRefit fitted =
       RefitEffect({model, context.ranking}, NuisancesOf(context, *ranked), ranked->baseline,
-                  is_found, early != nullptr ? *early : own.scored,
-                  HopelessCost(*ranked, best ? std::optional(best->effect) : std::nullopt));
+                  is_found, early != nullptr ? *early : own.scored, rival);
   // The score stays that of all fitted frames.
   if (early != nullptr) fitted.variant.score = own.scored.score;
   if (ranked->TakeIfBetter(effect, std::move(fitted), context.ranking.noise))
     CompareWithBest(context.ranking.noise, effect, ranked);
-}
-
-bool AreOfOneFamily(const RankedEffect& a, const RankedEffect& b) {
-  const auto &one = a.scored.candidate.effect, &other = b.scored.candidate.effect;
-  return one != nullptr && other != nullptr && one->Card().family == other->Card().family &&
-         one->Card().family != EffectFamily::kOther;
-}
-
-bool IsBeaten(const RefittedRanking& ranked, size_t effect) {
-  // A derivative may give no evidence for a member of the best effect's family that is missing; a
-  // pilot has been simulated at a finite size.
-  const std::optional<BestRefit>& best = ranked.best;
-  if (best && AreOfOneFamily(ranked.effects[effect], ranked.effects[best->effect]) &&
-      !ranked.effects[effect].scored.candidate.IsPilot())
-    return false;
-  // First order may underrate a rival as much as it has underrated the best effect.
-  const double of_best = best ? best->evidence - best->underrated : 0;
-  const double lead = of_best - ranked.effects[effect].scored.score.evidence;
-  return lead > DecisiveLead(ranked.BestEvidence());
 }
 
 // The model with a refitted effect, fitted from where it is, beside the columns of
@@ -103,8 +112,11 @@ VariantRefit Continue(const RefitContext& context, const RefittedRanking& ranked
     constexpr double kGainBeyondFirstOrder = 2;
     const NoiseLevel& noise = context.ranking.noise;
     MovedRefit moved = MovedBeside(setting, variant, before, noise);
+    const FirstStep& step = moved.first_step;
     if (moved.refit.message.empty() &&
-        IsFarBehind(ranked, moved.refit, noise, kGainBeyondFirstOrder * moved.gain_in_reach))
+        (step.cost - kGainBeyondFirstOrder * step.gain > hopeless_cost ||
+         IsFarBehind(ranked, variant, moved.refit, noise,
+                     kGainBeyondFirstOrder * moved.gain_in_reach)))
       return unconverged(
           std::move(moved.refit),
           "it is too far behind to be fitted along the motion with " + ranked.along->type);
@@ -181,6 +193,7 @@ void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEff
 void LookAlong(const RefitContext& context, const std::string& type, EffectRanking along,
                RefittedRanking* ranked) {
   ranked->pairs.clear();
+  ranked->failed_pairs.clear();
   auto ranking = std::make_shared<const EffectRanking>(along);
   // Beside the refit with the effect, `along` may have it a second time.
   std::erase_if(along.tried, [&](const TriedVariant& tried) { return tried.type == type; });
@@ -195,7 +208,8 @@ void LookAlong(const RefitContext& context, const std::string& type, EffectRanki
   const NoiseLevel& noise = context.ranking.noise;
   std::vector<char> were_far_behind;
   for (const size_t effect : others)
-    were_far_behind.push_back(IsFarBehind(*ranked, ranked->refits[effect], noise));
+    were_far_behind.push_back(
+        IsFarBehind(*ranked, ranked->effects[effect].scored, ranked->refits[effect], noise));
   ranked->best.reset();
   // The refit along whose motion the columns were computed tells which others are hopeless.
   if (first) {
@@ -203,7 +217,7 @@ void LookAlong(const RefitContext& context, const std::string& type, EffectRanki
                                   std::numeric_limits<double>::infinity(), context.model.progress));
     CompareWithBest(noise, *first, ranked);
   }
-  const double hopeless_cost = HopelessCost(*ranked, first);
+  const double hopeless_cost = HopelessCost(*ranked, first, noise);
   Progress& progress = *context.model.progress;
   progress.Begin("refit along the motion with " + type, static_cast<int64_t>(others.size()));
   std::vector<VariantRefit> continued(others.size());

@@ -51,9 +51,10 @@ void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEff
 // move otherwise: its columns of the mesh and the time step are then wrong for all of them, and
 // what is wrong looks like a further effect. A refit that was behind the best one by DecisiveLead()
 // beside the old columns, and would be beside the new ones even with twice the gain that first
-// order promises, stays where it is. One whose fit has failed is settled (SettledBeside). Both
-// count as not converged. Pairs that were fitted beside other columns are dropped. Throws
-// Interrupted.
+// order promises, or whose cost would stay above HopelessCost() with twice the gain of the first
+// full step of a fit, stays where it is. One whose fit has failed is settled (SettledBeside). Both
+// count as not converged. Pairs that were fitted beside other columns are dropped, and so are those
+// that could not be fitted there. Throws Interrupted.
 void LookAlong(const RefitContext& context, const std::string& type, EffectRanking along,
                RefittedRanking* ranked);
 

@@ -31,15 +31,23 @@ double DecisiveLead(double gain) {
   return std::max(kThresholds.refit.beaten_by, kThresholds.refit.beaten_share * gain);
 }
 
-double HopelessCost(const RefittedRanking& ranked, const std::optional<size_t>& effect) {
+double HopelessCost(const RefittedRanking& ranked, const std::optional<size_t>& effect,
+                    const NoiseLevel& noise) {
   if (!effect || !ranked.IsUsable(*effect)) return std::numeric_limits<double>::infinity();
   const double cost = ranked.refits[*effect].calibration.cost;
-  return cost + DecisiveLead(ranked.baseline.calibration.cost - cost);
+  const double gain = (ranked.baseline.calibration.cost - cost) / noise.variance;
+  return cost + noise.variance * DecisiveLead(gain);
 }
 
-bool IsFarBehind(const RefittedRanking& ranked, const EffectRefit& refit, const NoiseLevel& noise,
-                 double gain) {
-  const double evidence = EvidenceOf(refit, noise).all - ranked.baseline_evidence + gain;
+double EvidenceBeyondBaseline(const RefittedRanking& ranked, const ScoredVariant& variant,
+                              const EffectRefit& refit, const NoiseLevel& noise) {
+  return EvidenceOf(variant, refit, noise) - ranked.baseline_evidence -
+         SelectionPenalty(ranked.effects.size());
+}
+
+bool IsFarBehind(const RefittedRanking& ranked, const ScoredVariant& variant,
+                 const EffectRefit& refit, const NoiseLevel& noise, double gain) {
+  const double evidence = EvidenceBeyondBaseline(ranked, variant, refit, noise) + gain;
   return ranked.best && ranked.best->evidence - evidence > DecisiveLead(ranked.best->evidence);
 }
 
@@ -48,7 +56,7 @@ void CompareWithBest(const NoiseLevel& noise, size_t effect, RefittedRanking* ra
   if (!own.HasUsableRefit()) return;
   const EffectRefit& refit = ranked->refits[effect];
   own.predicts = Predicts(refit, ranked->baseline, noise);
-  const double evidence = EvidenceOf(refit, noise).all - ranked->baseline_evidence;
+  const double evidence = EvidenceBeyondBaseline(*ranked, own.scored, refit, noise);
   if (!own.predicts || !(evidence > ranked->BestEvidence())) return;
   ranked->best = BestRefit{effect, evidence, std::max(0.0, evidence - own.scored.score.evidence)};
 }

@@ -50,7 +50,7 @@ struct AlongRefit {
 // than the model without an effect has; with the noise of the ranking.
 struct BestRefit {
   size_t effect = 0;      // index of its effect in the ranking
-  double evidence = 0;    // by how much it exceeds that of the model without an effect
+  double evidence = 0;    // EvidenceBeyondBaseline()
   double underrated = 0;  // by how much first order has underrated it
 };
 
@@ -66,7 +66,7 @@ struct RefittedRanking {
   std::optional<BestRefit> best;      // nothing: none has more than that; found anew by LookAlong()
   std::optional<AlongRefit> along;  // nothing: the columns of the baseline stand beside all refits
   std::vector<FittedPair> pairs;    // beside the same columns
-  std::vector<std::array<std::string, 2>> failed_pairs;  // could not be fitted
+  std::vector<std::array<std::string, 2>> failed_pairs;  // could not be fitted beside them
   std::map<size_t, EffectRefit> nuisances;               // fits with a nuisance, by its index
 
   bool IsUsable(size_t effect) const { return effects[effect].HasUsableRefit(); }
@@ -91,14 +91,23 @@ struct RefitNoise {
 // By how much an effect must be behind the best refit to be negligible, if that gains so much.
 double DecisiveLead(double gain);
 
-// The cost of the fitted frames above which a refit is negligible beside that of `effect`; infinite
-// without an effect, or if it has no usable refit.
-double HopelessCost(const RefittedRanking& ranked, const std::optional<size_t>& effect);
+// The cost of the fitted frames (Calibration::cost) above which a refit is negligible beside that
+// of `effect`; infinite without an effect, or if it has no usable refit. A cost counts in units of
+// σ², log evidence in units of the variance v σ² of the noise: a difference of costs is v times the
+// log evidence that it costs.
+double HopelessCost(const RefittedRanking& ranked, const std::optional<size_t>& effect,
+                    const NoiseLevel& noise);
+
+// By how much the log evidence of a refit with an effect exceeds that of the model without one,
+// less what the choice among all effects and that of the variant cost. First-order evidence pays
+// for the choice in the same way, so that the two may be compared. −∞ if the refit is not usable.
+double EvidenceBeyondBaseline(const RefittedRanking& ranked, const ScoredVariant& variant,
+                              const EffectRefit& refit, const NoiseLevel& noise);
 
 // Whether a refit is so far behind the best one that it is negligible, even if its evidence rises
 // by `gain`.
-bool IsFarBehind(const RefittedRanking& ranked, const EffectRefit& refit, const NoiseLevel& noise,
-                 double gain = 0);
+bool IsFarBehind(const RefittedRanking& ranked, const ScoredVariant& variant,
+                 const EffectRefit& refit, const NoiseLevel& noise, double gain = 0);
 
 // Sets whether the held-out frames refute the refit of an effect, and takes it for the best one
 // where they do not and it has more evidence than the best one so far. `noise`: of the ranking.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "analysis/linear_evidence.h"
@@ -11,6 +12,7 @@
 #include "calibration/linear_misfit.h"
 #include "calibration/step_errors.h"
 #include "core/progress.h"
+#include "core/quantity.h"
 #include "diagnosis/decision_rules.h"
 #include "diagnosis/hypothesis_score.h"
 #include "diagnosis/thresholds.h"
@@ -35,13 +37,15 @@ UnknownEvidence UnknownEvidenceOf(const EffectRanking& ranking) {
   return evidence;
 }
 
-// The same for the step of `problem`; 0 where it cannot be told.
-double UnknownEvidenceOfStep(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                             const NoiseLevel& noise) {
+// The same for the step of `problem`; nothing where the motion, or that with shorter steps, cannot
+// be predicted.
+std::optional<double> UnknownEvidenceOfStep(const CalibrationProblem& problem,
+                                            const Eigen::VectorXd& values,
+                                            const NoiseLevel& noise) {
   const LinearisedMisfit misfit = problem.Linearise(values, {.with_jacobian = true});
-  if (!misfit.usable) return 0;
+  if (!misfit.usable) return std::nullopt;
   const std::optional<StepErrors> errors = FindStepErrors(problem, values, misfit);
-  if (!errors) return 0;
+  if (!errors) return std::nullopt;
   const auto whitened = [&](const Eigen::MatrixXd& rows) {
     return WhitenedRows(rows, misfit, {.correlation_time = noise.correlation_time});
   };
@@ -49,6 +53,12 @@ double UnknownEvidenceOfStep(const CalibrationProblem& problem, const Eigen::Vec
                                     PriorsAbout(problem.parameters(), values));
   const LinearFit left = unknown.Fit(IndexRange(0, misfit.jacobian.cols()), noise.variance);
   return 0.5 * left.misfit / noise.variance;
+}
+
+// Says what is known about the choice of the step.
+void Say(const std::string& what, Progress* progress) {
+  progress->Begin("time step", 0);
+  progress->End(what);
 }
 
 int HalvingsFor(double excess) {
@@ -73,19 +83,32 @@ std::optional<ShorterStep> ShortenStep(const CalibrationProblem& problem,
     halvings = std::min(most, halvings + HalvingsFor(unknown.of_step / tolerated));
     PredictionStudy study = problem.WithEstimatedNoise();
     study.time_step = std::ldexp(study.time_step, -halvings);
-    progress->Begin("time step", 0);
-    progress->End(fmt::format(
-        "{:.3g} ms, because the error of steps of {:.3g} ms could look like an effect",
-        1e3 * study.time_step, 1e3 * (found ? *found->study : problem.study()).time_step));
+    const double before = (found ? *found->study : problem.study()).time_step;
+    Say(fmt::format("{}, because the error of steps of {} could look like an effect",
+                    DurationText(study.time_step), DurationText(before)),
+        progress);
     ShorterStep shorter{std::make_unique<const PredictionStudy>(std::move(study)), nullptr, {}};
     shorter.problem =
         std::make_unique<const CalibrationProblem>(*shorter.study, problem.body()->mesh);
     Calibration fit = RefineFit(*shorter.problem, found ? found->values : fitted, progress);
-    if (fit.parameters.size() != fitted.size()) break;
+    if (fit.parameters.size() != fitted.size()) {
+      Say(fmt::format("{}, because shorter steps could not be fitted", DurationText(before)),
+          progress);
+      break;
+    }
     shorter.values = std::move(fit.parameters);
     found = std::move(shorter);
-    if (halvings < most)
-      unknown.of_step = UnknownEvidenceOfStep(*found->problem, found->values, ranking.noise);
+    if (halvings == most) break;
+    const std::optional<double> of_step =
+        UnknownEvidenceOfStep(*found->problem, found->values, ranking.noise);
+    if (!of_step) {
+      Say(fmt::format("{}; its error is not known, because the motion could not be predicted with "
+                      "shorter steps",
+                      DurationText(found->study->time_step)),
+          progress);
+      break;
+    }
+    unknown.of_step = *of_step;
   }
   return found;
 }

@@ -25,7 +25,8 @@ struct ShorterStep {
 // RefitThresholds::uncertain_step_evidence, less than the unknown part of the mesh's error, which
 // remains however short the step, or less than the share of the best effect's evidence that the
 // decision tolerates as an error of the model (kToleratedModelError). Nothing where no effect has
-// evidence, where the step is short enough, or where a shorter one cannot be fitted. `ranking`: of
+// evidence, where the step is short enough, or where a shorter one cannot be fitted. Where the
+// error of a shorter step cannot be told, it is the last one. `progress` says why. `ranking`: of
 // the effects along the motion of `fitted`; its noise counts for all steps. Throws Interrupted.
 std::optional<ShorterStep> ShortenStep(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& fitted, const EffectRanking& ranking,

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "calibration/linear_misfit.h"
@@ -39,20 +41,30 @@ Eigen::MatrixXd VisibleComponents(const Eigen::MatrixXd& columns, const Linearis
   return columns * eigen.eigenvectors().rightCols(visible);
 }
 
-// The columns of one recording, whose points are `part`, in all rows of the misfit; none where the
-// recording would not show such a force.
-Eigen::MatrixXd ColumnsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                          const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part) {
-  const Eigen::MatrixXd none(misfit.residual.size(), 0);
+// One recording: its columns, in all rows of the misfit, or why it has none.
+struct RecordedForce {
+  Eigen::MatrixXd columns;
+  std::string untried;
+};
+
+// `part`: the points of the recording.
+RecordedForce ForceIn(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                      const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part) {
+  const auto untried = [&](const std::string& why) {
+    return RecordedForce{Eigen::MatrixXd(misfit.residual.size(), 0),
+                         problem.models()[part.recording].recording().name + ": " + why};
+  };
   const RecordingModel recording = problem.ModelAt(part.recording, values);
   const ReplayedMotion motion = Replay(recording, problem.NuisanceOf(part.recording, values));
-  if (!motion.summary.IsUsable()) return none;
+  if (!motion.summary.IsUsable())
+    return untried("the fitted motion could not be predicted again (" + motion.summary.message +
+                   ")");
   const std::optional<SmoothForce> field = SmoothForceDuring(recording, motion, kMostKnots);
-  if (!field) return none;
+  if (!field) return untried("there are too few frames after the start of the motion");
   const PredictionOptions options = recording.Options(motion.nuisance);
   const ReducedResponse response(recording.model(), motion.states, field->Shapes(),
                                  {.scheme = options.step.scheme, .time_step = options.time_step});
-  if (!response.IsUsable()) return none;
+  if (!response.IsUsable()) return untried(response.message());
   const ForceHistories hat_functions = [&](double time) { return field->HatFunctions(time); };
   std::vector<int> frames(part.observed.size());
   std::iota(frames.begin(), frames.end(), 0);
@@ -61,29 +73,31 @@ Eigen::MatrixXd ColumnsOf(const CalibrationProblem& problem, const Eigen::Vector
       ObservedResponse(recording, motion, response, hat_functions(field->start), hat_functions,
                        frames, part.observed) *
       PersistentPriorRoot(field->KnotCount(), kPersistence);
-  return VisibleComponents(own, misfit);
+  RecordedForce force{VisibleComponents(own, misfit), ""};
+  return force.columns.cols() > 0 ? force : untried("no such force would be seen");
 }
 
 }  // namespace
 
-Eigen::MatrixXd UnknownForceColumns(const CalibrationProblem& problem,
-                                    const Eigen::VectorXd& values, const LinearisedMisfit& misfit) {
+UnknownForce UnknownForceColumns(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                                 const LinearisedMisfit& misfit) {
   // One part for each recording; the load cells have parts of their own, without points.
   std::vector<const LinearisedMisfit::Part*> of_points;
   for (const LinearisedMisfit::Part& part : misfit.parts)
     if (part.IsOfPoints()) of_points.push_back(&part);
-  std::vector<Eigen::MatrixXd> visible(of_points.size());
-  ParallelFor(static_cast<int64_t>(visible.size()), 1, [&](int64_t k) {
+  std::vector<RecordedForce> recorded(of_points.size());
+  ParallelFor(static_cast<int64_t>(recorded.size()), 1, [&](int64_t k) {
     const size_t at = static_cast<size_t>(k);
-    visible[at] = ColumnsOf(problem, values, misfit, *of_points[at]);
+    recorded[at] = ForceIn(problem, values, misfit, *of_points[at]);
   });
   Eigen::Index count = 0;
-  for (const Eigen::MatrixXd& columns : visible) count += columns.cols();
-  Eigen::MatrixXd all(misfit.residual.size(), count);
+  for (const RecordedForce& force : recorded) count += force.columns.cols();
+  UnknownForce all{Eigen::MatrixXd(misfit.residual.size(), count), {}};
   Eigen::Index next = 0;
-  for (const Eigen::MatrixXd& columns : visible) {
-    all.middleCols(next, columns.cols()) = columns;
-    next += columns.cols();
+  for (RecordedForce& force : recorded) {
+    all.columns.middleCols(next, force.columns.cols()) = force.columns;
+    next += force.columns.cols();
+    if (!force.untried.empty()) all.untried.push_back(std::move(force.untried));
   }
   return all;
 }

@@ -9,16 +9,26 @@
 #define LACUNA_DIAGNOSIS_UNKNOWN_FORCE_H_
 
 #include <Eigen/Core>
+#include <string>
+#include <vector>
 
 #include "calibration/calibration_problem.h"
 
 namespace lacuna {
 
-// One block of columns for each fitted recording, with the rows of `misfit`, m: the response to
-// independent amplitudes whose prior standard deviation is 1 m/s². No columns for recordings with
-// too few frames of motion, and where the reduced model is not usable. Throws Interrupted.
-Eigen::MatrixXd UnknownForceColumns(const CalibrationProblem& problem,
-                                    const Eigen::VectorXd& values, const LinearisedMisfit& misfit);
+struct UnknownForce {
+  // One block of columns for each fitted recording, with the rows of the misfit, m: the response to
+  // independent amplitudes whose prior standard deviation is 1 m/s².
+  Eigen::MatrixXd columns;
+  // The recordings without columns, each with the reason: too few frames of motion, a reduced model
+  // that is not usable, or a force that could not be seen. Without any column, nothing tests
+  // whether something unknown acts (AdequacyTest::p_unknown_force).
+  std::vector<std::string> untried;
+};
+
+// `misfit` is that at `values`. Throws Interrupted.
+UnknownForce UnknownForceColumns(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                                 const LinearisedMisfit& misfit);
 
 }  // namespace lacuna
 

@@ -22,19 +22,28 @@ struct VariantRefit {
   EffectRefit refit;
 };
 
+// What the best refit of another effect says of a refit that is to be made.
+struct RivalRefit {
+  // CalibrationOptions::hopeless_cost of the fits.
+  double hopeless_cost = std::numeric_limits<double>::infinity();
+  // First order leaves the effect further behind than DecisiveLead() (refitted_ranking.h).
+  bool is_far_ahead = false;
+};
+
 // The log evidence of all frames, up to a constant that all refits share, less the selection
 // penalty of the variant. −∞ if the refit is not usable.
 double EvidenceOf(const ScoredVariant& variant, const EffectRefit& refit, const NoiseLevel& noise);
 
 // Refits an effect from its best variants, and from a fixed size where that seems to end in a local
-// minimum. The best of these fits goes on if it has not converged (ContinueWithinBudget).
+// minimum. The best of these fits goes on if it has not converged (ContinueWithinBudget). Where the
+// rival is far ahead and the first of these fits was ended as hopeless, it is the only one. The
+// predictions of a refit (Calibration::predictions) include those that have found its start.
 // `without`: the refit with the same nuisances alone. `is_found`: another refit has come down to
 // the noise, which shows that first order leads to the right minimum; a model that is far off is
-// then not fitted afresh with this effect. `hopeless_cost`: as in CalibrationOptions. Throws
-// Interrupted.
+// then not fitted afresh with this effect. Throws Interrupted.
 VariantRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
                          const EffectRefit& without, bool is_found, const ScoredEffect& effect,
-                         double hopeless_cost = std::numeric_limits<double>::infinity());
+                         const RivalRefit& rival = {});
 
 // Makes this the refit of an effect. All that RankedEffect says of a refit is replaced at once, so
 // that the variant, the sizes, the errors and the values from which the model is fitted again

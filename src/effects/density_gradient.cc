@@ -75,15 +75,10 @@ class DensityGradientEffect final : public CloneableEffect<DensityGradientEffect
         .conserves_angular_momentum = false};
     AppendDirectionSetting("axis", "direction in which the density grows, of any length,",
                            Eigen::Vector3d::UnitZ(), &card);
-    AppendVector({.name = "origin",
-                  .meaning = "a point at rest where the density is the body's; at the centre of "
-                             "volume the total mass stays",
-                  .dimension = kLength,
-                  .null_value = kNoNullValue,
-                  .plausible_min = -1,
-                  .plausible_max = 1,
-                  .setting = true},
-                 Eigen::Vector3d::Zero(), &card);
+    AppendPointSetting("origin",
+                       "a point at rest where the density is the body's; at the centre of volume "
+                       "the total mass stays",
+                       &card);
     AppendGravitySetting(&card);
     return card;
   }

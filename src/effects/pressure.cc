@@ -153,6 +153,7 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
                         .null_value = 0,
                         .plausible_min = -1e4,
                         .plausible_max = 1e4,
+                        .of_modulus = true,
                         .default_value = kMustBeGiven}},
         .residual_when_missing =
             "The residual is a force along the normal of the surface, proportional to area, which "
@@ -165,14 +166,7 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
-    AppendVector({.name = "point",
-                  .meaning = "a point of the plane that bounds the part under pressure,",
-                  .dimension = kLength,
-                  .null_value = kNoNullValue,
-                  .plausible_min = -1,
-                  .plausible_max = 1,
-                  .setting = true},
-                 Eigen::Vector3d::Zero(), &card);
+    AppendPointSetting("point", "a point of the plane that bounds the part under pressure,", &card);
     AppendDirectionSetting("normal",
                            "the pressure acts on the faces that at rest lie wholly on this side "
                            "of the plane; if omitted, on all faces;",

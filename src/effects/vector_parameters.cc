@@ -26,6 +26,17 @@ void AppendDirectionSetting(const std::string& name, const std::string& meaning,
                default_value, card);
 }
 
+void AppendPointSetting(const std::string& name, const std::string& meaning, EffectCard* card) {
+  AppendVector({.name = name,
+                .meaning = meaning,
+                .dimension = kLength,
+                .null_value = kNoNullValue,
+                .plausible_min = -1,
+                .plausible_max = 1,
+                .setting = true},
+               Eigen::Vector3d::Zero(), card);
+}
+
 std::string VectorNameAt(const EffectCard& card, size_t k) {
   const std::string& first = card.parameters[k].name;
   if (k + 2 >= card.parameters.size() || !first.ends_with("_x")) return "";

@@ -23,6 +23,9 @@ void AppendVector(const ParameterCard& common, const Eigen::Vector3d& default_va
 void AppendDirectionSetting(const std::string& name, const std::string& meaning,
                             const Eigen::Vector3d& default_value, EffectCard* card);
 
+// Appends a point of the body at rest, m: a setting, without a null value, by default the origin.
+void AppendPointSetting(const std::string& name, const std::string& meaning, EffectCard* card);
+
 // "axis" if the parameters axis_x, axis_y, axis_z begin at index k of the card, else "".
 std::string VectorNameAt(const EffectCard& card, size_t k);
 

@@ -57,8 +57,8 @@ void RefuseFarSurface(const FrameState& state, const std::string& where) {
   if (mean <= kFarFromScan * size) return;
   throw InputError(fmt::format(
       "{}: the surface made from the points is {:.3g} mm from them on average, but only {:.3g} mm "
-      "across: the points do not surround one object. Likely causes are poses or intrinsics of the "
-      "cameras that do not belong to the images, and other objects in the scan (`crop`, "
+      "across: the points do not surround one object. Likely causes are camera poses or "
+      "intrinsics that do not match the images, and other objects in the scan (`crop`, "
       "`keep_largest` and `filter` leave them out)",
       where, 1e3 * mean, 1e3 * size));
 }

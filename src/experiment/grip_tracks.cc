@@ -1,52 +1,18 @@
 #include "experiment/grip_tracks.h"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "experiment/held_parts.h"
-#include "geometry/hermite.h"
 #include "geometry/rigid_fit.h"
+#include "geometry/smooth_path.h"
 
 namespace lacuna {
-namespace {
-
-using Places = std::map<double, Eigen::Matrix3Xd>;
-
-// The places at a time, with the velocity of the parabola through them and those before and behind.
-Knot<Eigen::Matrix3Xd> KnotOf(const Places& places, Places::const_iterator at) {
-  const auto velocity = [](Places::const_iterator from, Places::const_iterator to) {
-    return Eigen::Matrix3Xd((to->second - from->second) / (to->first - from->first));
-  };
-  const auto behind = std::next(at);
-  if (at == places.begin()) return {at->second, velocity(at, behind)};
-  const auto before = std::prev(at);
-  if (behind == places.end()) return {at->second, velocity(before, at)};
-  return {at->second, VelocityOfParabola(velocity(before, at), at->first - before->first,
-                                         velocity(at, behind), behind->first - at->first)};
-}
-
-// Along a smooth curve, as the path of a grip is (scan/time_series.h), and straight on behind the
-// last frame: a jump of the velocity would be a shock.
-Eigen::Matrix3Xd Interpolated(const Places& places, double time) {
-  const auto after = places.lower_bound(time);
-  if (after == places.end()) {
-    // The last time step ends behind the last frame, in which the grip need not have stopped.
-    const auto last = std::prev(places.end());
-    if (places.size() == 1) return last->second;
-    return last->second + (time - last->first) * KnotOf(places, last).velocity;
-  }
-  if (after == places.begin() || after->first == time) return after->second;
-  const auto before = std::prev(after);
-  const double length = after->first - before->first;
-  return Interpolate(KnotOf(places, before), KnotOf(places, after), length,
-                     (time - before->first) / length)
-      .position;
-}
-
-}  // namespace
 
 std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording) {
   const auto& names = recording.markers.names;
@@ -55,6 +21,27 @@ std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording)
     markers.push_back(
         static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin()));
   return markers;
+}
+
+Eigen::Matrix3Xd GripTracks::Track::At(double time) const {
+  if (grip.motion == GripMotion::kGiven) return MotionAt(grip, time, times.front()) * rest;
+  return SmoothPath(times, [this](size_t k) -> const Eigen::Matrix3Xd& { return places[k]; })
+      .At(time);
+}
+
+void GripTracks::Track::RestAt(double time) {
+  times = {time};
+  places = {rest};
+}
+
+void GripTracks::Track::Add(double time, Eigen::Matrix3Xd place) {
+  CHECK_GE(time, times.back());
+  if (time == times.back()) {
+    places.back() = std::move(place);
+    return;
+  }
+  times.push_back(time);
+  places.push_back(std::move(place));
 }
 
 GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Model* model)
@@ -85,29 +72,16 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
             track->span < 0 ? "have no marker_places"
                             : "do not span a plane: three or more are needed, not on a line"));
     }
-    if (grip.motion == GripMotion::kGiven)
-      track->since = grip.times[0];
-    else
-      track->places = {{recording.times.front(), track->rest}};
+    const bool is_given = grip.motion == GripMotion::kGiven;
+    track->RestAt(is_given ? grip.times[0] : recording.times.front());
     tracks_.push_back(track);
-    model->grips.push_back({track->nodes,
-                            [track](double time) -> Eigen::Matrix3Xd {
-                              if (track->grip.motion == GripMotion::kGiven)
-                                return ContinuedMotionAt(track->grip, time, track->since) *
-                                       track->rest;
-                              return Interpolated(track->places, time);
-                            },
-                            grip.axes});
+    model->grips.push_back(
+        {track->nodes, [track](double time) { return track->At(time); }, grip.axes});
   }
 }
 
 void GripTracks::Begin(double time) {
-  for (const auto& track : tracks_) {
-    if (track->grip.motion == GripMotion::kGiven)
-      track->since = time;
-    else
-      track->places = {{time, track->rest}};
-  }
+  for (const auto& track : tracks_) track->RestAt(time);
 }
 
 const RecordedGrip* GripTracks::Extend(double time, const Eigen::Matrix3Xd& before,
@@ -139,7 +113,7 @@ const RecordedGrip* GripTracks::Extend(double time, const Eigen::Matrix3Xd& befo
         break;
       }
     }
-    track->places[time] = place;
+    track->Add(time, std::move(place));
   }
   return lost;
 }

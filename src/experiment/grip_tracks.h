@@ -3,7 +3,6 @@
 #define LACUNA_EXPERIMENT_GRIP_TRACKS_H_
 
 #include <Eigen/Core>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -17,8 +16,10 @@ std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording)
 
 // Fixed regions do not move. A gripped region moves as a rigid body or, where the recording says
 // that it deforms, by an affine map. It follows a given path, its markers or the scanned surface.
-// Positions between two rows of the path, or two frames, lie on a smooth curve through those in the
-// rows or frames, and behind the last one on a straight line, so that their velocity does not jump.
+// Between the rows of a path, and between frames, the positions lie on a smooth path, which goes on
+// after the last of them (geometry/smooth_path.h): of a given path that of the displacement and the
+// rotation vector (MotionAt(), scan/recorded_grip.h), otherwise that of each node. The latter is
+// not quite rigid: a grip that turns by the angle φ after the last frame is stretched by φ².
 class GripTracks {
  public:
   // Adds a grip to the model for each fixed and gripped region of the recording. Throws InputError
@@ -43,11 +44,18 @@ class GripTracks {
   struct Track {
     RecordedGrip grip;
     Eigen::VectorXi nodes;
-    Eigen::Matrix3Xd rest;                      // rest positions of the nodes
-    std::vector<int> markers;                   // columns of the marker tracks
-    int span = 0;                               // dimension of their places (geometry/rigid_fit.h)
-    std::map<double, Eigen::Matrix3Xd> places;  // positions by time; empty on a given path
-    double since = 0;  // s, when a part on a given path is at its rest place
+    Eigen::Matrix3Xd rest;     // rest positions of the nodes
+    std::vector<int> markers;  // columns of the marker tracks
+    int span = 0;              // dimension of their places (geometry/rigid_fit.h)
+    // Ascending, s. At the first of them a part on a given path is at its rest place; it needs no
+    // others.
+    std::vector<double> times;
+    std::vector<Eigen::Matrix3Xd> places;  // positions of the nodes at these times
+
+    Eigen::Matrix3Xd At(double time) const;
+    void RestAt(double time);
+    // The positions at a time that is not before the latest.
+    void Add(double time, Eigen::Matrix3Xd place);
   };
   const Recording& recording_;
   const Model& model_;

@@ -4,12 +4,23 @@
 
 #include <array>
 #include <set>
+#include <variant>
 
 #include "core/error.h"
 #include "experiment/model_reader.h"
 
 namespace lacuna {
 namespace {
+
+// `inside`: the number of nodes in the part.
+void RequireFreeNodes(const HeldPart& part, Eigen::Index inside, const TetMesh& mesh) {
+  if (!part.axes.IsAll() || inside < mesh.NodeCount()) return;
+  const bool is_half_space = std::holds_alternative<HalfSpaceRegion>(part.region.shape);
+  throw InputError(
+      fmt::format("region \"{}\" holds all {} nodes of the body, so that nothing can move{}",
+                  part.region.name, mesh.NodeCount(),
+                  is_half_space ? " (a half_space is the side to which its `normal` points)" : ""));
+}
 
 // The first part that holds each component.
 class Holders {
@@ -29,8 +40,10 @@ class Holders {
       }
     }
     if (held_ == 3 * first_.size())
-      throw InputError(fmt::format("region \"{}\" holds the whole object: no part is free to move",
-                                   part.region.name));
+      throw InputError(
+          fmt::format("region \"{}\" and those before it hold all {} nodes of the body, "
+                      "so that nothing can move",
+                      part.region.name, first_.size()));
   }
 
  private:
@@ -47,6 +60,7 @@ std::vector<Eigen::VectorXi> NodesOfParts(const std::vector<HeldPart>& parts, co
   std::set<int> whole;  // nodes that a part holds along all axes
   for (const HeldPart& part : parts) {
     inside.push_back(NodesIn(part.region, mesh));
+    RequireFreeNodes(part, inside.back().size(), mesh);
     if (part.axes.IsAll()) whole.insert(inside.back().begin(), inside.back().end());
   }
   Holders holders(mesh.NodeCount());

@@ -63,9 +63,9 @@ EffectList ReadEffectsBeside(const EffectList& others, const Config& config) {
       item.Fail("type", fmt::format("{} is listed twice", card.type));
     if (!card.repeatable && Contain(others, card.type))
       item.Fail("type",
-                fmt::format("{0} is listed among the effects of the experiment already, which act "
-                            "in every recording, and a model has it only once: where {0} differs "
-                            "between the recordings, list it in each of them instead",
+                fmt::format("{0} is already listed among the effects of the experiment, which "
+                            "act in every recording, and a model can have it only once; if {0} "
+                            "differs between the recordings, list it in each of them instead",
                             card.type));
     RequireNotExcluded(item, card, others);
     RequireNotExcluded(item, card, effects);
@@ -114,11 +114,12 @@ std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material)
 std::vector<std::string> ImplausibleParameters(const EffectList& effects) {
   constexpr double kFar = 10;  // factor beyond the limits of the plausible range
   std::vector<std::string> warnings;
+  const double young_modulus = YoungModulusOf(effects);
   for (const auto& effect : effects) {
     const EffectCard& card = effect->Card();
     const Eigen::VectorXd values = effect->Parameters();
     for (size_t k = 0; k < card.parameters.size(); ++k) {
-      const ParameterCard& parameter = card.parameters[k];
+      const ParameterCard parameter = PlausibleIn(young_modulus, card.parameters[k]);
       const double value = values[static_cast<Eigen::Index>(k)];
       const bool too_small =
           parameter.log_scale && value > 0 && value < parameter.plausible_min / kFar;

@@ -52,9 +52,9 @@ void AddDoubtOfStated(const RecordingScatter& scatter, const StatedNoise& noise,
       scatter.typical <= kStatedFactor * noise.deviation)
     return;
   doubts->push_back(fmt::format(
-      "the points {}, {:.2g} times the stated `{}`. The scatter is what the files show; with the "
-      "stated value, a fit takes noise for motion. Write `{}`, or leave the key out, and the "
-      "noise is estimated",
+      "the points {}, {:.2g} times the stated `{}`. The scatter is measured from the files; "
+      "with the stated value, a fit would take noise for motion. Write `{}`, or omit the key "
+      "to have the noise estimated",
       ScatterBy(scatter), scatter.typical / noise.deviation, AsYaml(noise.key, noise.deviation),
       AsYaml(noise.key, scatter.typical)));
 }
@@ -65,8 +65,8 @@ std::string NoteOfStated(const RecordingScatter& scatter, const StatedNoise& noi
   const std::string stated = AsYaml(noise.key, noise.deviation);
   if (scatter.typical < kNoScatter) return fmt::format("; the stated `{}` is used", stated);
   return fmt::format(
-      "; the stated `{}` is {:.2g} times as much and is used, as is right where it includes errors "
-      "that neighbouring points or frames have in common, or those of the model",
+      "; the stated `{}` is {:.2g} times as large and is used; this is right if it includes "
+      "errors that neighbouring points or frames have in common, or errors of the model",
       stated, noise.deviation / scatter.typical);
 }
 
@@ -95,10 +95,10 @@ void AddDoubtOfOutliers(const RecordingScatter& scatter, std::vector<std::string
       (!(scatter.outlier_share > kManyOutliers) && !(scatter.worst_share > kManyInFrame)))
     return;
   doubts->push_back(fmt::format(
-      "{} of the points are outliers, more than five standard deviations off the surface through "
-      "their neighbours and up to {}; most in frame {}, {} of its points. `crop` under `frames` "
-      "leaves out what "
-      "is beside the object, and a smaller `outlier_deviations` under `filter` more of the rest",
+      "{} of the points are outliers, more than five standard deviations off the surface "
+      "through their neighbours and up to {}; most in frame {}, {} of its points. `crop` under "
+      "`frames` removes what lies beside the object; a smaller `outlier_deviations` under "
+      "`filter` removes more of the rest",
       InPercent(scatter.outlier_share), InMillimetres(scatter.farthest), scatter.worst_frame,
       InPercent(scatter.worst_share)));
 }
@@ -119,7 +119,7 @@ std::string DescribeScatter(const RecordingScatter& scatter, const StatedNoise& 
   if (std::isnan(scatter.typical)) return "";
   std::string text = "the points " + ScatterBy(scatter);
   if (scatter.is_upper_bound)
-    text += fmt::format(", {} that the {} not resolve included",
+    text += fmt::format(", including {} that the {} not resolve",
                         scatter.is_of_surface ? "shape" : "motion",
                         scatter.is_of_surface ? "points do" : "frames do");
   if (scatter.largest >= kNoScatter)

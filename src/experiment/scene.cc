@@ -66,16 +66,16 @@ SceneGrip ReadGrip(const Config& config, int index) {
   grip.profile = ReadProfile(config);
   grip.axes = ReadDirections(config);
   if (!grip.axes.IsAll() && grip.angle != 0)
-    config.Fail("directions", "is implemented for grips that do not rotate");
+    config.Fail("directions", "is implemented only for grips that do not rotate");
   if (const auto cell = config.OptionalChild("measured_force")) {
     grip.force_deviation = cell->Quantity("deviation", kForce, kPositive);
     if (!grip.axes.IsAll())
-      config.Fail("measured_force", "is implemented for grips that hold along all axes");
+      config.Fail("measured_force", "is implemented only for grips that hold along all axes");
   }
   if (const auto cell = config.OptionalChild("measured_torque")) {
     grip.torque_deviation = cell->Quantity("deviation", kTorque, kPositive);
     if (!grip.axes.IsAll())
-      config.Fail("measured_torque", "is implemented for grips that hold along all axes");
+      config.Fail("measured_torque", "is implemented only for grips that hold along all axes");
   }
   return grip;
 }
@@ -312,7 +312,9 @@ void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
   object.gravity = GravityOf(scene.effects);
   for (const SceneLoad& load : scene.loads) {
     if (!load.measured) continue;
-    MeasuredForce force{load.region.name, load.region, {}, {}, {}};
+    MeasuredForce force;
+    force.name = load.region.name;
+    force.region = load.region;
     force.times = Eigen::Map<const Eigen::VectorXd>(motion.times.data(),
                                                     static_cast<Eigen::Index>(motion.times.size()));
     force.forces.resize(3, force.times.size());

@@ -6,6 +6,12 @@ const Effect* ElasticityOf(const Model& model) {
   return model.effects.empty() ? nullptr : model.effects.front().get();
 }
 
+double YoungModulusOf(const EffectList& effects) {
+  if (effects.empty()) return kReferenceModulus;
+  const int index = ParameterIndex(effects.front()->Card(), "young_modulus");
+  return index < 0 ? kReferenceModulus : effects.front()->Parameters()[index];
+}
+
 std::vector<char> GrippedNodes(const Model& model) {
   std::vector<char> gripped;
   for (const AxisSet held : HeldAxes(model)) gripped.push_back(held.IsAll());

@@ -45,6 +45,10 @@ struct Calibration {
   //   H⁻¹ (Jᵀ R J/v + P⁻¹) H⁻¹,  H = JᵀJ/v + P⁻¹,
   // the sandwich estimate of least squares under correlated errors (White, Econometrica 48, 1980).
   double autocorrelation = 0;
+
+  // Whether the first prediction has succeeded. Without parameters there are no estimates either
+  // way.
+  bool HasSolution() const { return usable || !estimates.empty(); }
 };
 
 // Runs the calibration. A start outside its bounds is a programming error (CHECK). If the

@@ -46,7 +46,7 @@ SceneMotion Simulate(const Scene& scene, const DropMesh& mesh, Progress* progres
       [&] { return SimulateWholeScene(scene, progress); });
 }
 
-void SaveNumbers(const DropNumbers& numbers, const fs::path& folder) {
+void WriteNumbers(const DropNumbers& numbers, const fs::path& folder) {
   WriteFileAtomically(folder / "numbers.json", ToJson(numbers).dump(2) + "\n");
 }
 
@@ -54,7 +54,7 @@ DropNumbers ReadNumbers(const fs::path& folder) {
   return ReadJsonFile(folder / "numbers.json", DropNumbersFrom);
 }
 
-void SaveDrawnDrop(const DrawnDrop& drop, const fs::path& folder) {
+void WriteDrawnDrop(const DrawnDrop& drop, const fs::path& folder) {
   const DropMotion& motion = drop.motion;
   const auto frames = static_cast<Eigen::Index>(motion.times.size());
   Eigen::MatrixXd positions(3 * motion.body->mesh.NodeCount(), frames);
@@ -63,7 +63,7 @@ void SaveDrawnDrop(const DrawnDrop& drop, const fs::path& folder) {
   WriteTetMesh(folder / "body.msh", motion.body->mesh);
   WriteNpy(folder / "times.npy", Eigen::Map<const Eigen::VectorXd>(motion.times.data(), frames));
   WriteNpy(folder / "positions.npy", positions);
-  SaveNumbers(drop.numbers, folder);
+  WriteNumbers(drop.numbers, folder);
 }
 
 DrawnDrop ReadDrawnDrop(double density, const fs::path& folder) {
@@ -95,7 +95,7 @@ std::vector<DropRun> RunDrop(const DropStudy& study, const fs::path& folder, Pro
           return DrawnDrop{{motion.body, motion.times, motion.positions},
                            MeasureDrop(scene, motion)};
         },
-        SaveDrawnDrop,
+        WriteDrawnDrop,
         [&](const fs::path& stage) { return ReadDrawnDrop(study.scene.density, stage); });
     const DropNumbers halved = RunStage<DropNumbers>(
         &run, {name + "_halved", kDropVersion, OptionsOf(study, mesh, 2), {}}, progress,
@@ -103,7 +103,7 @@ std::vector<DropRun> RunDrop(const DropStudy& study, const fs::path& folder, Pro
           const Scene scene = SceneOf(study, mesh, 2);
           return MeasureDrop(scene, Simulate(scene, mesh, progress));
         },
-        SaveNumbers, ReadNumbers);
+        WriteNumbers, ReadNumbers);
     drops.push_back({mesh, drawn.motion, drawn.numbers, halved});
   }
   run.Finish();

@@ -186,7 +186,7 @@ void WriteTraces(const Table1Study& study, const Table1Seed& seed,
     for (size_t i = 0; i < names.size(); ++i)
       table.push_back({names[i], columns.col(static_cast<Eigen::Index>(i))});
     const std::string& name = study.configurations[c].name;
-    SaveCsv(table, folder / (name + ".csv"));
+    WriteCsv(table, folder / (name + ".csv"));
     lines.push_back({name, columns.col(0), 1e3 * columns.col(6)});
   }
   WriteLineChart(

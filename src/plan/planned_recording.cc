@@ -15,6 +15,7 @@
 #include "geometry/tri_mesh.h"
 #include "plan/clamp_clearance.h"
 #include "scan/marker_frames.h"
+#include "scan/time_span.h"
 
 namespace lacuna {
 namespace {
@@ -124,12 +125,15 @@ void RepeatLastPose(double time, RecordedGrip* grip) {
   grip->rotations.col(count) = grip->rotations.col(count - 1);
 }
 
-// Extends a given path to `end` (s): the grip rests in its last pose. The pose is given again one
-// spacing after the last one, too: with a pose at `end` alone, the spline through the poses would
-// leave the last one with nearly the full velocity and swing back until `end`.
-void RestUntil(double end, RecordedGrip* grip) {
+// Extends a given path that does not cover the frames at `times` (s) to the last of them: the grip
+// rests in its last pose. The pose is given again one spacing after the last one, too: with a pose
+// at the end alone, the spline through the poses would leave the last one with nearly the full
+// velocity and swing back until the end.
+void RestUntilLast(const std::vector<double>& times, RecordedGrip* grip) {
+  const double end = times.back();
+  if (grip->motion != GripMotion::kGiven || CoversTimes(grip->times, end, end, TimeMargin(times)))
+    return;
   const Eigen::Index count = grip->times.size();
-  if (grip->motion != GripMotion::kGiven || grip->times[count - 1] >= end) return;
   if (count > 1) {
     const double stopped = 2 * grip->times[count - 1] - grip->times[count - 2];
     if (stopped < end) RepeatLastPose(stopped, grip);
@@ -285,6 +289,7 @@ PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& 
   Pull(protocol.pull, &item);
 
   RecordedObject& object = item.recording.object;
+  for (RecordedGrip& grip : object.grips) RestUntilLast(times, &grip);
   std::vector<RecordedGrip> grips = AsGrips(object, times.front() - kLeaves, times.back());
   FixtureMotion fixture;
   if (!protocol.turn.isZero(0) || protocol.shake) {
@@ -295,7 +300,6 @@ PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& 
     object.grips = grips;
   }
   planned.fixture = fixture.turn;
-  for (RecordedGrip& grip : object.grips) RestUntil(times.back(), &grip);
   for (MeasuredForce& force : object.forces) HoldUntil(times.back(), &force);
   for (MeasuredReaction& reaction : object.reactions) {
     reaction.times =

@@ -349,9 +349,14 @@ PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protoc
   record.verdict = VerdictWithNames(run.diagnosis);
   const std::vector<HypothesisProbability>& all = run.diagnosis.decision.probabilities;
   record.rivals = RivalsOf(run.diagnosis);
+  for (const HypothesisProbability& one : all)
+    if (!IsOfEffects(one)) record.no_effect += one.probability;
   std::set<std::vector<std::string>> kept;  // by their effects, where they have any
   for (const size_t k : NameFrom(all).kept) {
-    if (all[k].kind == Kind::kNuisance) record.also_left.push_back(all[k].names.front());
+    if (all[k].kind == Kind::kNuisance)
+      record.also_left.push_back({all[k].names.front(),
+                                  ShortTitle(run.diagnosis, all[k].names.front()),
+                                  all[k].probability});
     kept.insert(IsOfEffects(all[k]) ? EffectsOf(all, all[k]) : all[k].names);
   }
   if (kept.size() > 1) RequireNoCommonEffect(run.diagnosis, record);
@@ -373,9 +378,11 @@ PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protoc
   SetNamedNow(run, &record.rivals);
   double sum = 0;
   for (const PlannedRival& rival : record.rivals) sum += rival.probability;
-  for (PlannedRival& rival : record.rivals)
+  for (PlannedRival& rival : record.rivals) {
+    rival.of_diagnosis = rival.probability;
     rival.probability =
         sum > 0 ? rival.probability / sum : 1 / static_cast<double>(record.rivals.size());
+  }
   progress->Begin("plan", static_cast<int64_t>(protocols.size()));
   record.outcomes.resize(protocols.size());
   std::atomic<int64_t> done = 0;

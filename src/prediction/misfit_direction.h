@@ -3,6 +3,7 @@
 #define LACUNA_PREDICTION_MISFIT_DIRECTION_H_
 
 #include <cstddef>
+#include <functional>
 
 #include "fem/tangent_linear.h"
 
@@ -18,8 +19,11 @@ struct MisfitDirection {
   Kind kind = Kind::kModel;
   int axis = 0;                    // for kShift, kTurn, kGripShift and kGripTurn: 0, 1 or 2
   Perturbation perturbation = {};  // for kModel
-  size_t grip = 0;                 // for kGripShift and kGripTurn: its index in Model::grips
-  size_t reading = 0;              // for kCellDelay: its index in RecordingModel::Reactions()
+  // For kModel, in place of `perturbation`: one that depends on the recording in which it is
+  // simulated. It is made for the recording's model, with the grips at their fitted placements.
+  std::function<Perturbation(const Model& placed)> perturbation_in = {};
+  size_t grip = 0;     // for kGripShift and kGripTurn: its index in Model::grips
+  size_t reading = 0;  // for kCellDelay: its index in RecordingModel::Reactions()
 
   bool IsOfGrip() const { return kind == Kind::kGripShift || kind == Kind::kGripTurn; }
   // Whether the derivative is that of the simulation. All others follow from the motion.

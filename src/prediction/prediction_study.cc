@@ -86,13 +86,14 @@ std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
   std::vector<ModelParameter> parameters;
   std::map<std::string, int> seen;
   size_t of_material = 0;
+  const double young_modulus = YoungModulusOf(effects);
   for (size_t at = 0; at < effects.size(); ++at) {
     const EffectCard& card = effects[at]->Card();
     const bool is_material = at == 0;
     const int repeat = ++seen[card.type];
     const Eigen::VectorXd values = effects[at]->Parameters();
     for (size_t k = 0; k < card.parameters.size(); ++k) {
-      const ParameterCard& entry = card.parameters[k];
+      const ParameterCard entry = PlausibleIn(young_modulus, card.parameters[k]);
       const double value = values[static_cast<Eigen::Index>(k)];
       const auto end_of_material =
           parameters.begin() + static_cast<std::ptrdiff_t>(is_material ? 0 : of_material);
@@ -113,8 +114,8 @@ std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
                    : repeat > 1 ? fmt::format("{}#{}.{}", card.type, repeat, entry.name)
                                 : card.type + "." + entry.name;
       prior.start = value;
-      SetBoundsOfCard(entry.bounds, &prior);
       prior.log_scale = entry.log_scale && value > 0;
+      SetBoundsOfCard(entry.bounds, &prior);
       prior.typical = prior.log_scale ? 0.5 * std::log(entry.plausible_max / entry.plausible_min)
                                       : 0.5 * (entry.plausible_max - entry.plausible_min);
       prior.prior_deviation = prior.typical;

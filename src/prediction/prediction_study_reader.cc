@@ -37,6 +37,27 @@ void RequireHeldObject(const Config& config, const EffectList& of_study,
                   item.hold ? " after its release" : "", item.recording.file.string()));
 }
 
+// Throws InputError where one region holds all points along all axes, as where the normal of a
+// half-space has the wrong sign: their motion is then that of the region, whatever the model is. A
+// measured force may depend on the model even so. `config` is the entry of the recording.
+void RequireFreePoints(const Config& config, const PredictedRecording& item) {
+  const RecordedObject& object = item.recording.object;
+  if (item.ShowsScans() || !object.reactions.empty()) return;
+  const Eigen::Matrix3Xd& places = item.recording.markers.places;
+  const auto require_free = [&](const Region& region, AxisSet axes) {
+    if (!axes.IsAll()) return;
+    for (const auto& place : places.colwise())
+      if (!Contains(region, place)) return;
+    config.Fail("recording",
+                fmt::format("region \"{}\" of {} holds all {} markers or tracked points, so that "
+                            "their motion does not depend on the model (a half_space is the side "
+                            "to which its `normal` points)",
+                            region.name, item.recording.file.string(), places.cols()));
+  };
+  for (const RecordedSupport& support : object.fixed) require_free(support.region, support.axes);
+  for (const RecordedGrip& grip : object.grips) require_free(grip.region, grip.axes);
+}
+
 // Throws InputError where all markers rest at their places on the undeformed object, because such
 // recordings determine no parameter.
 void RequireSomethingToFit(const Config& config, const PredictionStudy& study) {
@@ -239,6 +260,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
                                       "without a name has that of its recording",
                                       recording.name));
     RequireHeldObject(item, study.effects, recording);
+    RequireFreePoints(item, recording);
     study.recordings.push_back(std::move(recording));
   }
   if (study.recordings.empty()) config.Fail("recordings", "is empty");

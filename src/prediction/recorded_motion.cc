@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "core/quantity.h"
@@ -85,9 +86,9 @@ std::string SlownessWarning(const PredictedRecording& item, const PredictionStud
       steps <= kMany * static_cast<double>(item.frames.size()))
     return "";
   return fmt::format(
-      "{}: takes {:.0f} steps of {:.3g} ms for {} frames: if the object is in equilibrium in every "
+      "{}: takes {:.0f} steps of {} for {} frames: if the object is in equilibrium in every "
       "frame, `motion: {{scheme: quasi_static}}` takes one step for each",
-      item.name, steps, 1e3 * study.time_step, item.frames.size());
+      item.name, steps, DurationText(study.time_step), item.frames.size());
 }
 
 // The model of a recording has the effects of the study and its own.
@@ -104,6 +105,21 @@ std::vector<std::string> AuxeticWarnings(const PredictionStudy& study) {
   for (const PredictedRecording& item : study.recordings)
     if (const std::string warning = AuxeticWarning(item.effects); !warning.empty())
       warnings.push_back(item.name + ": " + warning);
+  return warnings;
+}
+
+// An effect of the study is reported once. Those of a recording follow the study's, whose material
+// determines what is plausible.
+std::vector<std::string> ImplausibleValues(const PredictionStudy& study) {
+  std::vector<std::string> warnings = ImplausibleParameters(study.effects);
+  const auto of_study = static_cast<std::ptrdiff_t>(warnings.size());
+  for (const PredictedRecording& item : study.recordings) {
+    EffectList effects = study.effects;
+    effects.insert(effects.end(), item.effects.begin(), item.effects.end());
+    const std::vector<std::string> all = ImplausibleParameters(effects);
+    std::transform(all.begin() + of_study, all.end(), std::back_inserter(warnings),
+                   [&](const std::string& warning) { return item.name + ": " + warning; });
+  }
   return warnings;
 }
 
@@ -188,6 +204,7 @@ std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
     add(GravityWarning(item, study));
   }
   add(ScanSettingsWarning(study));
+  for (const std::string& warning : ImplausibleValues(study)) add(warning);
   for (const std::string& warning : AuxeticWarnings(study)) add(warning);
   add(RestWarning(study));
   return warnings;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -75,11 +76,13 @@ class RecordingModel {
 
   // The misfit in the chosen `frames` (ascending) with `nuisance` in the order of nuisances(), and
   // its Jacobian in these directions. The result depends on the arguments and this model alone, so
-  // that several threads may predict at once. A simulation that stops early is reported in
+  // that several threads may predict at once. `on_frame`, unless it is empty, is called whenever
+  // one of the frames has been predicted. A simulation that stops early is reported in
   // Misfit::summary. Throws Interrupted.
   Misfit Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
                  const std::vector<MisfitDirection>& directions = {},
-                 const PredictionHints& hints = {}) const;
+                 const PredictionHints& hints = {},
+                 const std::function<void()>& on_frame = {}) const;
 
   // The model whose grips have the placements of these nuisance parameters; that of the recording
   // where all placements are exact.
@@ -115,9 +118,10 @@ class RecordingModel {
   void AddNuisance(const std::string& name, const std::string& unit, double deviation,
                    MisfitDirection direction);
   void RequireThatScansShowTheObject();
-  // What a simulated direction perturbs with these nuisance parameters.
-  Perturbation PerturbationOf(const MisfitDirection& direction,
-                              const Eigen::VectorXd& nuisance) const;
+  // What a simulated direction perturbs with these nuisance parameters, with which `placed` is the
+  // PlacedModel().
+  Perturbation PerturbationOf(const MisfitDirection& direction, const Eigen::VectorXd& nuisance,
+                              const Model& placed) const;
   Eigen::Vector3d Middle() const { return observer_->Places().rowwise().mean(); }
 
   const PredictionStudy& study_;

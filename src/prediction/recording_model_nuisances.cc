@@ -98,7 +98,9 @@ GripPlacement RecordingModel::PlacementOf(size_t grip, const Eigen::VectorXd& nu
 }
 
 Perturbation RecordingModel::PerturbationOf(const MisfitDirection& direction,
-                                            const Eigen::VectorXd& nuisance) const {
+                                            const Eigen::VectorXd& nuisance,
+                                            const Model& placed) const {
+  if (direction.perturbation_in) return direction.perturbation_in(placed);
   if (!direction.IsOfGrip()) return direction.perturbation;
   Perturbation perturbation;
   perturbation.grip = PlacementDerivative(model_.grips[direction.grip], model_.body->mesh.nodes,

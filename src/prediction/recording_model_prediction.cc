@@ -52,7 +52,8 @@ void FinishMisfit(const RecordingModel& model, std::vector<double> times, Misfit
 
 Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
                                const std::vector<MisfitDirection>& directions,
-                               const PredictionHints& hints) const {
+                               const PredictionHints& hints,
+                               const std::function<void()>& on_frame) const {
   const Model placed = PlacedModel(nuisance);
   PredictionOptions options = Options(nuisance);
   options.reactions = MeasuredReactions(Reactions(), placed);
@@ -62,7 +63,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   const std::vector<ReadingTime> visits = VisitedTimes(*this, times, nuisance);
   std::vector<Perturbation> perturbations;
   for (const MisfitDirection& direction : directions)
-    if (direction.IsSimulated()) perturbations.push_back(PerturbationOf(direction, nuisance));
+    if (direction.IsSimulated()) perturbations.push_back(PerturbationOf(direction, nuisance, placed));
   const Eigen::Isometry3d registration = Registration(nuisance);
   const bool is_registered = recording_.shift_deviation > 0 || recording_.turn_deviation > 0;
 
@@ -83,6 +84,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
                             ? (*hints.observed)[visit.frame]
                             : observer_->ObserveWithin(hints.reach_factor, frame, nodal.position);
         AppendFrame(*this, directions, registration, frame, nodal, std::move(seen), &misfit);
+        if (on_frame) on_frame();
       });
   FinishMisfit(*this, std::move(times), &misfit);
   return misfit;

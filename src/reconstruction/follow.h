@@ -70,7 +70,7 @@ FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBod
 // otherwise.
 std::string FarFromScan(const TriMesh& surface, const Eigen::Matrix3Xd& points);
 
-void SaveFollowedMotion(const FollowedMotion& motion, const std::filesystem::path& folder);
+void WriteFollowedMotion(const FollowedMotion& motion, const std::filesystem::path& folder);
 FollowedMotion ReadFollowedMotion(const ReconstructionStudy& study, const ReferenceBody& reference,
                                   const std::filesystem::path& folder);
 

@@ -24,7 +24,7 @@ Eigen::Vector3d FromJson(const nlohmann::json& value) {
 
 }  // namespace
 
-void SaveFollowedMotion(const FollowedMotion& motion, const std::filesystem::path& folder) {
+void WriteFollowedMotion(const FollowedMotion& motion, const std::filesystem::path& folder) {
   nlohmann::json index;
   index["noise_m"] = NumberOrNull(motion.noise);
   index["warnings"] = motion.warnings;

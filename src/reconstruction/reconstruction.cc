@@ -72,7 +72,7 @@ RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress
       {"motion", kMotionVersion,
        part({"material", "effects", "density", "motion", "forces", "fit", "registration"}), behind},
       progress, [&] { return FollowFrames(study, reference, states, progress); },
-      SaveFollowedMotion,
+      WriteFollowedMotion,
       [&](const std::filesystem::path& folder) {
         return ReadFollowedMotion(study, reference, folder);
       });
@@ -88,7 +88,7 @@ RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress
         return measured;
       },
       [&](const RunRecord& value, const std::filesystem::path& folder) {
-        SaveRunRecord(value, folder);
+        WriteRunRecord(value, folder);
         WriteFields(study, states, motion, folder);
         if (std::any_of(motion.frames.begin(), motion.frames.end(),
                         [](const FollowedFrame& frame) { return frame.solver.usable; }))

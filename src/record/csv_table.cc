@@ -27,7 +27,7 @@ std::vector<std::string_view> Split(std::string_view line) {
 
 }  // namespace
 
-void SaveCsv(const CsvTable& table, const std::filesystem::path& file) {
+void WriteCsv(const CsvTable& table, const std::filesystem::path& file) {
   CHECK(!table.empty()) << file << " would have no columns";
   std::set<std::string> names;
   std::string text;

@@ -19,9 +19,9 @@ using CsvTable = std::vector<CsvColumn>;
 // double; NaN is written as "nan". Throws InputError if the file cannot be written. Columns of
 // unequal length, and names that are empty, repeated or contain a comma, quote or line break, are
 // programming errors (CHECK).
-void SaveCsv(const CsvTable& table, const std::filesystem::path& file);
+void WriteCsv(const CsvTable& table, const std::filesystem::path& file);
 
-// Reads a file written by SaveCsv. Throws InputError with file:line if a row has another number of
+// Reads a file written by WriteCsv. Throws InputError with file:line if a row has another number of
 // fields than the header or if a field is not a number.
 CsvTable LoadCsv(const std::filesystem::path& file);
 

@@ -74,9 +74,9 @@ json DecisionToJson(const DecisionRecord& decision) {
   return {{"probabilities", ProbabilitiesToJson(decision.probabilities)},
           {"adequacy",
            {{"beside", adequacy.beside},
-            {"p_unknown_force", adequacy.p_unknown_force},
+            {"p_unknown_force", NumberOrNull(adequacy.p_unknown_force)},
             {"p_further", adequacy.p_further},
-            {"p_variance", adequacy.p_variance},
+            {"p_variance", NumberOrNull(adequacy.p_variance)},
             {"p", adequacy.p},
             {"is_adequate", adequacy.is_adequate},
             {"further", adequacy.further},
@@ -106,9 +106,9 @@ DecisionRecord DecisionFromJson(const json& value) {
     decision.separations.push_back({one.at("first"), one.at("second"), NumberOr(one.at("lambda"))});
   const json& adequacy = value.at("adequacy");
   decision.adequacy = {adequacy.at("beside"),
-                       adequacy.at("p_unknown_force"),
+                       NumberOr(adequacy.at("p_unknown_force")),
                        adequacy.at("p_further"),
-                       adequacy.at("p_variance"),
+                       NumberOr(adequacy.at("p_variance")),
                        adequacy.at("p"),
                        adequacy.at("is_adequate"),
                        adequacy.at("further"),

@@ -18,6 +18,7 @@ using nlohmann::json;
 
 constexpr int kSchemaVersion = 10;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // has_held_out is the same for all models of a diagnosis and is written only once.
 json ErrorsToJson(const ModelErrors& errors) {
@@ -56,6 +57,8 @@ json SizeToJson(const RecordedSize& size) {
           {"expected", size.expected},
           {"deviation", NumberOrNull(size.deviation)},
           {"detectable", NumberOrNull(size.detectable)},
+          {"plausible", NumberOrNull(size.plausible)},
+          {"at_limit", size.at_limit},
           {"refitted", size.refitted ? IntervalToJson(*size.refitted) : json(nullptr)}};
 }
 
@@ -68,6 +71,9 @@ RecordedSize SizeFromJson(const json& value) {
                     {}};
   if (const json& found = value.at("refitted"); !found.is_null())
     size.refitted = IntervalFromJson(found);
+  // Both are absent in diagnoses of earlier versions.
+  if (value.contains("plausible")) size.plausible = NumberOr(value.at("plausible"), kNan);
+  size.at_limit = value.value("at_limit", false);
   return size;
 }
 
@@ -84,6 +90,7 @@ json RefitToJson(const RecordedRefit& refit) {
                 {"rms_over_sigma", refit.rms_over_sigma},
                 {"others", others}};
   if (!refit.unconverged.empty()) value["unconverged"] = refit.unconverged;
+  if (refit.fails_at_limit) value["fails_at_limit"] = true;
   if (refit.removed) value["removed_misfit"] = ByDataKindToJson(*refit.removed);
   value.update(ErrorsToJson(refit.errors));
   return value;
@@ -93,6 +100,7 @@ RecordedRefit RefitFromJson(const json& value, bool has_held_out) {
   RecordedRefit refit;
   refit.message = value.at("message");
   refit.unconverged = value.value("unconverged", "");
+  refit.fails_at_limit = value.value("fails_at_limit", false);
   refit.evidence = value.at("evidence");
   refit.held_out_evidence = value.at("held_out_evidence");
   refit.explained = value.at("explained_share");

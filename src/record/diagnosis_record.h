@@ -9,6 +9,7 @@
 #define LACUNA_RECORD_DIAGNOSIS_RECORD_H_
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,11 @@ struct RecordedSize {
   double detectable = 0;  // the smallest detectable size
   // After a usable refit; absent for a pilot hypothesis.
   std::optional<RecordedInterval> refitted = {};
+  // The largest distance from the value at which the effect vanishes that is plausible in the
+  // model; NaN for a pilot hypothesis.
+  double plausible = std::numeric_limits<double>::quiet_NaN();
+  // The refit has ended at the limit of what is plausible, which cuts its interval off.
+  bool at_limit = false;
 };
 
 // Another parameter of a refitted effect, such as a place or a time, in its unit (SI).
@@ -62,6 +68,9 @@ struct RecordedRefit {
   double rms_over_sigma = 0;     // all frames, with the adopted nuisances at their best
   ModelErrors errors;
   std::vector<RecordedValue> others;  // empty if the refit is not usable
+  // The held-out frames would refute the effect, had its size not ended at the limit of what is
+  // plausible.
+  bool fails_at_limit = false;
   // σ², the squared misfit of each kind of data that the effect removes; negative where it adds to
   // it. Absent where the fitted recordings have one kind only, and if the refit is not usable.
   std::optional<ByDataKind> removed = {};

@@ -30,6 +30,13 @@ const Family& Find(EffectFamily family) {
 
 }  // namespace
 
+ParameterCard PlausibleIn(double young_modulus, ParameterCard parameter) {
+  if (!parameter.of_modulus) return parameter;
+  parameter.plausible_min *= young_modulus / kReferenceModulus;
+  parameter.plausible_max *= young_modulus / kReferenceModulus;
+  return parameter;
+}
+
 std::string FamilyTitle(EffectFamily family) { return Find(family).title; }
 std::string FamilyName(EffectFamily family) { return Find(family).name; }
 

@@ -39,6 +39,10 @@ inline constexpr double kNoNullValue = std::numeric_limits<double>::quiet_NaN();
 // A parameter whose value the user must give, because there is no sensible default.
 inline constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
 
+// Young's modulus, Pa, of the body for which cards state the plausible ranges of stiffnesses and
+// stresses.
+inline constexpr double kReferenceModulus = 1e5;
+
 struct ParameterCard {
   std::string name;           // the YAML key
   std::string meaning;        // one phrase
@@ -47,11 +51,17 @@ struct ParameterCard {
   double null_value = 0;      // the value at which the effect vanishes, or kNoNullValue
   double plausible_min = 0;   // range of plausible values for soft objects, SI; the larger of the
   double plausible_max = 0;   // two absolute values is the scale of the prior
-  double default_value = 0;   // SI, or kMustBeGiven
-  bool log_scale = false;     // the fit and the trials use the logarithm of the value
-  bool setting = false;       // describes where or how the effect acts; never fitted
+  // A stiffness or a stress inside the body, of which the range is plausible in a body with
+  // kReferenceModulus; it grows in proportion to the body's Young's modulus (PlausibleIn()).
+  bool of_modulus = false;
+  double default_value = 0;  // SI, or kMustBeGiven
+  bool log_scale = false;    // the fit and the trials use the logarithm of the value
+  bool setting = false;      // describes where or how the effect acts; never fitted
   TrialSetting trial = {};
 };
+
+// The parameter with the range that is plausible in a body with this Young's modulus, Pa.
+ParameterCard PlausibleIn(double young_modulus, ParameterCard parameter);
 
 // The variants with which the diagnosis tries an effect that the model lacks. A derivative at the
 // null value determines the size of an effect, but not its place, direction or time scale, which

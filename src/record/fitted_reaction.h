@@ -28,8 +28,9 @@ struct ReactionMeasure {
 // like a mistake.
 inline constexpr double kConsiderableReactionError = 0.03;
 
-// Mistakes in a reading, each of which alone would explain nearly all of its misfit, up to a factor
-// on the prediction that stands for other moduli.
+// Mistakes in a reading, each of which would explain nearly all of its misfit, up to a factor on
+// the prediction where that stands for other moduli. A factor and an offset explain it together
+// only.
 struct ReadingMistakes {
   std::optional<double> factor;  // the reading is this multiple of the force; negative: the sign
   std::optional<double> offset;  // N, the largest of its components

@@ -28,7 +28,7 @@ std::string InputName(const std::filesystem::path& file, const std::filesystem::
   return (is_inside ? inside : file.filename()).generic_string();
 }
 
-void SaveManifest(const Manifest& manifest, const std::filesystem::path& file) {
+void WriteManifest(const Manifest& manifest, const std::filesystem::path& file) {
   json stages = json::object();
   for (const auto& [name, result] : manifest.stages) {
     json files = json::array();

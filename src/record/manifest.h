@@ -59,7 +59,7 @@ std::string StageKey(const StageIdentity& identity);
 std::string InputName(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 // Writes the file atomically. Throws InputError if that fails.
-void SaveManifest(const Manifest& manifest, const std::filesystem::path& file);
+void WriteManifest(const Manifest& manifest, const std::filesystem::path& file);
 
 // Throws InputError if the file is absent, damaged, or written by a later version of Lacuna.
 Manifest LoadManifest(const std::filesystem::path& file);

@@ -63,7 +63,7 @@ json ScansToJson(const std::vector<Eigen::Matrix3Xd>& scans, std::vector<std::st
   const Eigen::Index shown = std::min<Eigen::Index>(most, kMostShownPoints);
   if (shown < most)
     notes->push_back(
-        fmt::format("Of each scan at most {} of up to {} points are drawn.", shown, most));
+        fmt::format("At most {} of up to {} points of each scan are drawn.", shown, most));
   Eigen::MatrixXd points = Eigen::MatrixXd::Constant(
       3 * shown, static_cast<Eigen::Index>(scans.size()), std::numeric_limits<double>::quiet_NaN());
   for (size_t f = 0; f < scans.size(); ++f) {

@@ -33,7 +33,7 @@ std::string BytesOf(const std::vector<Number>& numbers) {
 template <typename Number>
 std::vector<Number> NumbersOf(const std::string& bytes, size_t count) {
   if (bytes.size() != count * sizeof(Number))
-    throw InputError("a packed array has another size than its shape");
+    throw InputError("the size of a packed array does not match its shape");
   std::vector<Number> numbers(count);
   if (count > 0) std::memcpy(numbers.data(), bytes.data(), bytes.size());
   return numbers;
@@ -153,9 +153,9 @@ UnpackedArray Unpack(const json& packed) {
         values.data(), static_cast<Eigen::Index>(entries), static_cast<Eigen::Index>(frames));
     return array;
   } catch (const json::exception& problem) {
-    throw InputError(std::string("is no packed array: ") + problem.what());
+    throw InputError(std::string("is not a packed array: ") + problem.what());
   } catch (const std::out_of_range&) {
-    throw InputError("is no packed array: its shape is empty");
+    throw InputError("is not a packed array: its shape is empty");
   }
 }
 

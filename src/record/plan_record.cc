@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kSchemaVersion = 3;
+constexpr int kSchemaVersion = 4;
 // Probabilities of a right name are rounded to multiples of this before they are compared.
 constexpr double kNoticeable = 0.05;
 
@@ -81,13 +81,24 @@ bool IsPlanOf(const std::string& diagnosis, const std::filesystem::path& file) {
   return plan.is_object() && plan.value("diagnosis", json()) == diagnosis;
 }
 
+bool IsPlanOfAnotherFormat(const std::filesystem::path& file) {
+  const json plan = ReadJsonFile(file);
+  return plan.is_object() && plan.value("schema_version", json()) != kSchemaVersion;
+}
+
 void WritePlanFile(const PlanRecord& record, const std::filesystem::path& file) {
-  json rivals = json::array(), outcomes = json::array();
+  json rivals = json::array(), also_left = json::array(), outcomes = json::array();
   for (const PlannedRival& rival : record.rivals)
     rivals.push_back({{"effect", rival.effect},
+                      {"effects", rival.effects},
                       {"title", rival.title},
                       {"probability", rival.probability},
+                      {"of_diagnosis", rival.of_diagnosis},
                       {"named_now", rival.named_now}});
+  for (const LeftNuisance& nuisance : record.also_left)
+    also_left.push_back({{"nuisance", nuisance.name},
+                         {"title", nuisance.title},
+                         {"probability", nuisance.probability}});
   for (const PlannedOutcome& outcome : record.outcomes)
     outcomes.push_back(OutcomeToJson(outcome, record.rivals));
   const json all = {{"schema_version", kSchemaVersion},
@@ -95,7 +106,8 @@ void WritePlanFile(const PlanRecord& record, const std::filesystem::path& file) 
                     {"run", record.run},
                     {"verdict", record.verdict},
                     {"rivals", rivals},
-                    {"also_left", record.also_left},
+                    {"no_effect", record.no_effect},
+                    {"also_left", also_left},
                     {"not_predicted", record.not_predicted},
                     {"outcomes", outcomes}};
   WriteFileAtomically(file, all.dump(2) + "\n");

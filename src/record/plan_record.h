@@ -24,10 +24,17 @@ struct PlannedRival {
   // How often recordings like those of the run lead to its name alone; 0 for a pair, which that
   // simulation does not weigh.
   double named_now = 0;
-  // The effect, or the two of a pair in alphabetical order. Not in files.
-  std::vector<std::string> effects = {};
+  std::vector<std::string> effects;  // the effect, or the two of a pair in alphabetical order
+  double of_diagnosis = 0;           // its probability among all hypotheses of the diagnosis
 
   bool IsPair() const { return effects.size() == 2; }
+};
+
+// An error of the measurement or of the computation that the diagnosis could not rule out, and that
+// a plan does not weigh.
+struct LeftNuisance {
+  std::string name, title;  // "grip_compliance"; within a sentence
+  double probability = 0;   // that it alone is the cause, among all hypotheses of the diagnosis
 };
 
 struct PlannedPair {
@@ -76,11 +83,12 @@ struct PlannedOutcome {
 };
 
 struct PlanRecord {
-  std::string diagnosis;               // hash of the diagnosis.json that the plan starts from
-  std::string run;                     // the name of the experiment
-  std::string verdict;                 // of the diagnosis, with its names
-  std::vector<PlannedRival> rivals;    // the most probable one first
-  std::vector<std::string> also_left;  // nuisances that the diagnosis has not ruled out either
+  std::string diagnosis;                // hash of the diagnosis.json that the plan starts from
+  std::string run;                      // the name of the experiment
+  std::string verdict;                  // of the diagnosis, with its names
+  std::vector<PlannedRival> rivals;     // the most probable one first
+  double no_effect = 0;                 // probability of the diagnosis that no effect is missing
+  std::vector<LeftNuisance> also_left;  // in the order of the diagnosis
   // Rivals that are not weighed: beyond kMostPlannedRivals, or with an unknown influence on a
   // planned recording.
   std::vector<std::string> not_predicted;
@@ -95,6 +103,10 @@ void SortOutcomes(std::vector<PlannedOutcome>* outcomes);
 // Whether a plan was made from the diagnosis whose diagnosis.json has this hash. False for a file
 // that is no plan. Throws InputError when it cannot be read or is not JSON.
 bool IsPlanOf(const std::string& diagnosis, const std::filesystem::path& file);
+
+// Whether a plan is in the format of another version of Lacuna. Throws InputError when the file
+// cannot be read or is not JSON.
+bool IsPlanOfAnotherFormat(const std::filesystem::path& file);
 
 // Throws InputError when the file cannot be written.
 void WritePlanFile(const PlanRecord& record, const std::filesystem::path& file);

@@ -12,6 +12,16 @@ void VisitFields(Visitor& visit, NuisanceParameterConflict& conflict) {
 }
 
 template <typename Visitor>
+void VisitFields(Visitor& visit, ModelParameterConflict& conflict) {
+  visit.Kind("model_parameter");
+  visit("parameter", conflict.parameter);
+  visit("unit", conflict.unit);
+  visit("deviations", conflict.deviations);
+  visit("mean", conflict.mean);
+  visit("is_default", conflict.is_default);
+}
+
+template <typename Visitor>
 void VisitFields(Visitor& visit, MarkerConflict& conflict) {
   visit.Kind("marker");
   visit("recording", conflict.recording);

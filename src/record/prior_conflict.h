@@ -18,6 +18,15 @@ struct NuisanceParameterConflict {
   double deviations = 0;  // distance in standard deviations of its prior
 };
 
+// An estimated parameter of the model is far from the mean of its prior.
+struct ModelParameterConflict {
+  std::string parameter, unit;
+  // Distance in standard deviations of the prior, on the scale on which the parameter is fitted.
+  double deviations = 0;
+  double mean = 0;          // SI, of the prior
+  bool is_default = false;  // the experiment gives no deviation: the prior is that of the card
+};
+
 // A marker's estimated place on the undeformed object is far from the recorded one.
 struct MarkerConflict {
   std::string recording, marker;
@@ -57,8 +66,9 @@ struct UnmatchedScans {
   double least_share = 0;  // fewer points than this share of the best frame's were compared
 };
 
-using PriorConflict = std::variant<NuisanceParameterConflict, MarkerConflict, MarkerConflictCount,
-                                   ReferenceShapeConflict, PatchConflict, UnmatchedScans>;
+using PriorConflict =
+    std::variant<NuisanceParameterConflict, ModelParameterConflict, MarkerConflict,
+                 MarkerConflictCount, ReferenceShapeConflict, PatchConflict, UnmatchedScans>;
 
 nlohmann::json PriorConflictToJson(const PriorConflict& conflict);
 // Throws nlohmann::json::exception and InputError.

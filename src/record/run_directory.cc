@@ -230,7 +230,7 @@ void RunDirectory::Finish() {
   for (const std::string& stage : outdated) fs::remove_all(StageFolder(stage), ignored);
 }
 
-void RunDirectory::Save() const { SaveManifest(manifest_, folder_ / kManifestName); }
+void RunDirectory::Save() const { WriteManifest(manifest_, folder_ / kManifestName); }
 
 fs::path FinishedStage(const fs::path& run, const std::string& stage) {
   const Manifest manifest = LoadManifest(run / kManifestName);

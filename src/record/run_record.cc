@@ -156,7 +156,7 @@ bool RunRecord::IsUsable() const {
                      [](const auto& stage) { return stage.second.usable; });
 }
 
-void SaveRunRecord(const RunRecord& record, const std::filesystem::path& folder) {
+void WriteRunRecord(const RunRecord& record, const std::filesystem::path& folder) {
   const bool has_points = record.point_residuals.size() > 0;
   if (has_points) {
     CHECK_EQ(record.point_residuals.cols(), static_cast<Eigen::Index>(record.frames.size()));
@@ -179,7 +179,7 @@ void SaveRunRecord(const RunRecord& record, const std::filesystem::path& folder)
   for (const auto& [name, value] : record.measures) document["measures"][name] = FromNumber(value);
 
   if (has_points) WriteNpy(folder / kPointResidualsName, record.point_residuals);
-  SaveCsv(FrameTable(record.frames), folder / kFramesName);
+  WriteCsv(FrameTable(record.frames), folder / kFramesName);
   WriteFileAtomically(folder / kRecordName,
                       document.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }

@@ -86,7 +86,7 @@ struct RunRecord {
 // residuals, point_residuals.npy with those, and frames.csv, a table of the numbers of the frames.
 // Throws InputError if a file cannot be written. CHECKs that the point residuals, if any, have one
 // column per frame.
-void SaveRunRecord(const RunRecord& record, const std::filesystem::path& folder);
+void WriteRunRecord(const RunRecord& record, const std::filesystem::path& folder);
 
 // Reads record.json and point_residuals.npy. Throws InputError if a file is absent or damaged.
 RunRecord LoadRunRecord(const std::filesystem::path& folder);

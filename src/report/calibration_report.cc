@@ -164,6 +164,15 @@ struct ConflictSentence {
     return fmt::format("{} is {:.1f} standard deviations of its prior away from 0",
                        conflict.parameter, conflict.deviations);
   }
+  std::string operator()(const ModelParameterConflict& conflict) const {
+    return fmt::format(
+        "{} is {:.1f} standard deviations of its prior away from the prior's mean, {:.4g}{}{}{}",
+        conflict.parameter, conflict.deviations, conflict.mean, conflict.unit.empty() ? "" : " ",
+        conflict.unit,
+        conflict.is_default ? "; this prior is the default one, from the plausible range of the "
+                              "parameter: `mean` and `deviation` in `fit` replace it"
+                            : "");
+  }
   std::string operator()(const MarkerConflict& conflict) const {
     const Eigen::Vector3d offset = 1e3 * conflict.offset;
     return fmt::format(

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/quantity.h"
 #include "core/text_layout.h"
 #include "report/agreement_text.h"
 #include "report/quantity_text.h"
@@ -39,6 +40,17 @@ std::string Sizes(const RecordedEffect& effect) {
                                   : fmt::format("{:.3g} ± {:.2g}", size.expected, size.deviation));
   const std::string all = fmt::format("{}", fmt::join(sizes, ", "));
   return WithUnit(sizes.size() > 1 ? "(" + all + ")" : all, effect.sizes.front().unit);
+}
+
+// Which sizes of a refit have ended at the limit of what is plausible; empty where none has.
+std::string SizesAtLimit(const RecordedEffect& effect) {
+  std::vector<std::string> names;
+  for (const RecordedSize& size : effect.sizes)
+    if (size.refitted && size.at_limit) names.push_back(size.parameter);
+  if (names.empty()) return "";
+  return fmt::format("{} {} at the limit of what is plausible, where {} cut off",
+                     EnumerationText(names), names.size() > 1 ? "are" : "is",
+                     names.size() > 1 ? "their intervals are" : "its interval is");
 }
 
 std::string RefittedError(const RecordedEffect& effect) {
@@ -112,6 +124,8 @@ std::string EffectLines(const RecordedEffect& effect) {
            Percent(effect.first_order.absorbed), effect.sizes.size() == 1 ? Sizes(effect) : ""});
   std::vector<std::string> more;
   if (effect.sizes.size() > 1) more.push_back(Sizes(effect));
+  if (std::string limit = SizesAtLimit(effect); usable && !limit.empty())
+    more.push_back(std::move(limit));
   if (!effect.variant.empty()) more.push_back((usable ? "refitted from " : "") + effect.variant);
   if (usable && !effect.refit->others.empty())
     more.push_back("to " + OtherParameters(*effect.refit));
@@ -196,8 +210,8 @@ std::string NoiseParagraph(const DiagnosisRecord& diagnosis) {
       "Noise: σ = {}, {}.", fmt::join(sigma, " and "),
       noise.correlation_time > 0 ? fmt::format("correlated over {:.3g} s", noise.correlation_time)
                                  : "white in time");
-  text += fmt::format(" The residual of the best-fitting model is {:.1f} σ. Time step: {:.3g} ms.",
-                      diagnosis.best_rms_over_sigma, 1e3 * diagnosis.time_step);
+  text += fmt::format(" The residual of the best-fitting model is {:.1f} σ. Time step: {}.",
+                      diagnosis.best_rms_over_sigma, DurationText(diagnosis.time_step));
   if (std::isfinite(diagnosis.decision.chance))
     text += fmt::format(
         " If nothing is missing, the evidence for the best effect exceeds {:.1f} by chance in one "

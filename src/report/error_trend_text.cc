@@ -10,7 +10,8 @@
 namespace lacuna {
 namespace {
 
-constexpr double kClearRankCorrelation = 0.3;  // larger: fewer, clearer trends are reported
+constexpr double kClearRankCorrelation = 0.3;      // larger: fewer, clearer trends are reported
+constexpr double kSignificantDeviations = 2.5758;  // of a normal distribution, two-sided p = 0.01
 
 // The name of a quantity, the unit in which it is printed, and the factor from the SI unit to it.
 struct QuantityName {
@@ -31,11 +32,22 @@ QuantityName NameOf(const std::string& quantity) {
   return found != names.end() ? found->second : QuantityName{quantity, "", 1};
 }
 
-// Whether the rank correlation is clear and has the sign of the change of the error from the first
-// to the last bin.
+// Whether independent ranks of so many values would give a correlation as large in fewer than one
+// of a hundred cases. It is taken as normal with variance 1/(n − 1) (Kendall, Rank Correlation
+// Methods, Griffin 1948), which for fewer than about ten values asks for more than the exact
+// distribution: fewer than eight are never significant.
+bool IsSignificant(double rank_correlation, int count) {
+  return std::abs(rank_correlation) * std::sqrt(count - 1.0) >= kSignificantDeviations;
+}
+
+// Whether the rank correlation is clear, significant and has the sign of the change of the error
+// from the first to the last bin.
 bool IsClear(const ErrorTrend& trend) {
   if (!(std::abs(trend.rank_correlation) >= kClearRankCorrelation) || trend.bins.size() < 2)
     return false;
+  int count = 0;
+  for (const ErrorBin& bin : trend.bins) count += bin.count;
+  if (!IsSignificant(trend.rank_correlation, count)) return false;
   const double change = trend.bins.back().rms - trend.bins.front().rms;
   return change * trend.rank_correlation > 0;
 }

@@ -89,6 +89,10 @@ std::string FirstErrorSentence(const ReportedModel& model) {
 // has no such number.
 struct DeviationsFromPrior {
   double operator()(const NuisanceParameterConflict& conflict) const { return conflict.deviations; }
+  // The files do not contain a default prior, about which DefaultPriorSentence() speaks.
+  double operator()(const ModelParameterConflict& conflict) const {
+    return conflict.is_default ? 0 : conflict.deviations;
+  }
   double operator()(const MarkerConflict& conflict) const {
     return conflict.offset.norm() / conflict.deviation;
   }
@@ -119,6 +123,19 @@ std::string PriorConflictSentence(const CalibrationRecord& record) {
       "The fit contradicts what the files say by {:.0f} standard deviations, which should be "
       "checked first: {}.",
       most, DescribePriorConflict(*worst));
+}
+
+// The parameter that a default prior holds back most; empty where there is none. The value and its
+// interval are wrong without any other sign if the prior is.
+std::string DefaultPriorSentence(const CalibrationRecord& record) {
+  const ModelParameterConflict* worst = nullptr;
+  for (const PriorConflict& conflict : record.prior_conflicts) {
+    const auto* of_model = std::get_if<ModelParameterConflict>(&conflict);
+    if (of_model == nullptr || !of_model->is_default) continue;
+    if (worst == nullptr || of_model->deviations > worst->deviations) worst = of_model;
+  }
+  if (worst == nullptr) return "";
+  return fmt::format("A default prior may distort the fit: {}.", DescribePriorConflict(*worst));
 }
 
 std::string NextStep(const DiagnosisRecord& diagnosis) {
@@ -212,11 +229,37 @@ double ProbabilityOfNoEffect(const DecisionRecord& decision) {
   });
 }
 
+// The effects that would have stayed hidden in the recordings at a considerable size, in a sentence
+// of its own; empty where there are none. Hypotheses that are not tried to first order do not
+// count.
+std::string HiddenSentence(const DiagnosisRecord& diagnosis) {
+  constexpr double kConsiderable = 0.1;  // of the largest plausible size
+  constexpr size_t kMostNames = 3;
+  std::vector<std::string> hidden;
+  for (const RecordedEffect& effect : diagnosis.ranking) {
+    const bool is_hidden =
+        !effect.sizes.empty() &&
+        std::all_of(effect.sizes.begin(), effect.sizes.end(), [](const RecordedSize& size) {
+          return size.detectable > kConsiderable * size.plausible;
+        });
+    if (is_hidden) hidden.push_back(ShortTitle(diagnosis, effect.type));
+  }
+  if (hidden.empty()) return "";
+  if (const size_t others = hidden.size() - std::min(hidden.size(), kMostNames); others > 0) {
+    hidden.resize(kMostNames);
+    hidden.push_back(fmt::format("{} other{}", others, others > 1 ? "s" : ""));
+  }
+  return fmt::format(
+      " Not every further effect would have been noticed: {} could have a tenth of the largest "
+      "plausible size.",
+      EnumerationText(hidden));
+}
+
 std::string AdequateSentence(const DiagnosisRecord& diagnosis) {
   const double nothing = ProbabilityOfNoEffect(diagnosis.decision);
   const std::string corrected = CorrectedError(diagnosis);
   return fmt::format(
-      "{}{}: {}.",
+      "{}{}: {}.{}",
       nothing < kLikely ? "No further effect can be named with certainty"
                         : "No further effect is needed",
       std::isnan(nothing)
@@ -224,7 +267,8 @@ std::string AdequateSentence(const DiagnosisRecord& diagnosis) {
           : fmt::format(" (probability that no effect is missing: {})", PercentText(nothing)),
       corrected.empty() ? "the error that is left is that of the noise, or no larger than the "
                           "error of any model"
-                        : corrected);
+                        : corrected,
+      HiddenSentence(diagnosis));
 }
 
 std::string UnknownSentence(const DiagnosisRecord& diagnosis) {
@@ -336,7 +380,7 @@ void AddVerdict(const ReportedModel& model, std::vector<std::string>* sentences)
   if (!model.calibration.usable) return;
   for (std::string sentence :
        {MissedReactionSentence(model), PriorConflictSentence(model.calibration),
-        VerdictSentence(model), NotMetElsewhere(model)})
+        DefaultPriorSentence(model.calibration), VerdictSentence(model), NotMetElsewhere(model)})
     if (!sentence.empty()) sentences->push_back(std::move(sentence));
 }
 

@@ -37,10 +37,15 @@ std::string DescribeMistakes(const FittedReaction& reaction) {
   std::vector<std::string> likely;
   if (mistakes.factor && *mistakes.factor < 0)
     likely.emplace_back("with the opposite sign (`exerted_by`)");
-  if (mistakes.factor && *mistakes.factor > 0)
+  if (mistakes.factor && mistakes.offset)
+    likely.push_back(
+        fmt::format("if it were {:.3g} times the {} plus an offset of {:.3g} {}, as where the load "
+                    "or the reading has another unit",
+                    *mistakes.factor, reaction.Quantity(), *mistakes.offset, reaction.Unit()));
+  else if (mistakes.factor && *mistakes.factor > 0)
     likely.push_back(fmt::format("if it were {:.3g} times the {}, as in another unit",
                                  *mistakes.factor, reaction.Quantity()));
-  if (mistakes.offset)
+  else if (mistakes.offset)
     likely.push_back(fmt::format("with an offset of {:.3g} {} (`tare_deviation`)", *mistakes.offset,
                                  reaction.Unit()));
   if (mistakes.delay)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/text_layout.h"
+#include "record/verdict.h"
 #include "report/quantity_text.h"
 
 namespace lacuna {
@@ -16,27 +17,90 @@ namespace {
 // A recording is recommended only if the right name is at least this probable with it.
 constexpr double kWorthMaking = 0.5;
 
-std::string Question(const PlanRecord& plan) {
+bool IsAdequate(const PlanRecord& plan) { return plan.verdict == VerdictName(Verdict::kAdequate); }
+
+// "drag (52 %) and mass-proportional damping (43 %)", with the probabilities of the diagnosis.
+std::string RivalsText(const PlanRecord& plan) {
   std::vector<std::string> rivals;
+  for (const PlannedRival& rival : plan.rivals)
+    rivals.push_back(fmt::format("{} ({})", rival.title, PercentText(rival.of_diagnosis)));
+  return EnumerationText(rivals);
+}
+
+// What is open, from the most general verdict to the choice among rivals.
+std::string WhatIsOpen(const PlanRecord& plan) {
+  const bool is_one = plan.rivals.size() == 1;
+  const auto would_show = [&] {
+    return fmt::format("which recording would best show {}, if {} there", RivalsText(plan),
+                       is_one ? "it were" : "one of them were");
+  };
+  if (IsAdequate(plan))
+    return fmt::format(
+        "Nothing is open: the recordings show no missing effect (probability that none is missing: "
+        "{}). The plan only tells {}.",
+        PercentText(plan.no_effect), would_show());
+  if (plan.verdict == VerdictName(Verdict::kNoPower))
+    return fmt::format("These recordings could not show any effect. The plan tells {}.",
+                       would_show());
+  if (is_one)
+    return fmt::format("Whether {} is missing, or something else, is open.", RivalsText(plan));
+  return fmt::format("The diagnosis cannot tell apart {}.", RivalsText(plan));
+}
+
+// The nuisance that is more probable than any rival; null: there is none.
+const LeftNuisance* MostProbableNuisance(const PlanRecord& plan) {
+  const LeftNuisance* most = nullptr;
+  for (const LeftNuisance& nuisance : plan.also_left)
+    if (most == nullptr || nuisance.probability > most->probability) most = &nuisance;
+  const bool is_behind =
+      most != nullptr &&
+      std::any_of(plan.rivals.begin(), plan.rivals.end(), [&](const PlannedRival& rival) {
+        return rival.of_diagnosis >= most->probability;
+      });
+  return is_behind ? nullptr : most;
+}
+
+// The nuisances, other than `known`, that the diagnosis has left and that the plan does not weigh.
+std::string NotWeighed(const PlanRecord& plan, const LeftNuisance* known) {
+  std::vector<std::string> nuisances;
+  for (const LeftNuisance& nuisance : plan.also_left)
+    if (&nuisance != known)
+      nuisances.push_back(
+          fmt::format("{} ({})", nuisance.title, PercentText(nuisance.probability)));
+  if (nuisances.empty()) return "";
+  return fmt::format(
+      " Errors of the measurement or of the discretisation could explain it, too ({}); a plan does "
+      "not count them.",
+      fmt::join(nuisances, ", "));
+}
+
+// The share of recordings like those of the run that lead to the right name.
+std::string ShareNow(const PlanRecord& plan) {
   double now = 0;
+  bool has_pair = false;
   for (const PlannedRival& rival : plan.rivals) {
-    rivals.push_back(fmt::format("{} ({})", rival.title, PercentText(rival.probability)));
     now += rival.probability * rival.named_now;
+    has_pair = has_pair || rival.IsPair();
   }
-  std::string text =
-      rivals.size() == 1
-          ? fmt::format("Whether {} is missing, or something else, is open.", plan.rivals[0].title)
-          : fmt::format("The diagnosis cannot tell apart {}.", EnumerationText(rivals));
-  const bool has_pair = std::any_of(plan.rivals.begin(), plan.rivals.end(),
-                                    [](const PlannedRival& rival) { return rival.IsPair(); });
-  text += fmt::format(" Recordings like these lead to the right name in {} of such cases{}.",
-                      PercentText(now),
-                      has_pair ? ", where two effects at once count as not named" : "");
-  if (!plan.also_left.empty())
-    text += fmt::format(
-        " Errors of the measurement or of the discretisation could explain it, too "
-        "({}); a plan does not count them.",
-        fmt::join(plan.also_left, ", "));
+  return fmt::format(
+      " If {} is missing, recordings like these lead to the right name in {} of "
+      "cases{}.",
+      plan.rivals.size() == 1 ? "it" : "one of them", PercentText(now),
+      has_pair ? ", where two effects at once count as not named" : "");
+}
+
+std::string Question(const PlanRecord& plan) {
+  // Nuisances are part of the probability that no effect is missing.
+  const bool is_open = !IsAdequate(plan);
+  const LeftNuisance* likelier = is_open ? MostProbableNuisance(plan) : nullptr;
+  std::string text;
+  if (likelier != nullptr)
+    text = fmt::format(
+        "The most probable explanation is {} ({}), which is no physical effect. A plan does not "
+        "weigh it: the shares of right names hold only if an effect is what is missing. ",
+        likelier->title, PercentText(likelier->probability));
+  text += WhatIsOpen(plan) + ShareNow(plan);
+  if (is_open) text += NotWeighed(plan, likelier);
   if (!plan.not_predicted.empty())
     text += fmt::format(" Not planned for: {}.", fmt::join(plan.not_predicted, ", "));
   return text;
@@ -88,10 +152,10 @@ std::string Advice(const PlanRecord& plan) {
         "{} ({:.2g} s), would lead to the right name in {} of cases: {}.{}",
         plan.outcomes.size(), best.what, best.seconds, PercentText(best.probability),
         EnumerationText(named), Inseparable(plan));
-  return fmt::format(
-      "Record next: {} ({:.2g} s). With it the right name is expected in {} of "
-      "cases: {}.",
-      best.what, best.seconds, PercentText(best.probability), EnumerationText(named));
+  return fmt::format("{}: {} ({:.2g} s). With it the right name is expected in {} of cases{}: {}.",
+                     IsAdequate(plan) ? "The best recording" : "Record next", best.what,
+                     best.seconds, PercentText(best.probability),
+                     IsAdequate(plan) ? " in which one is missing" : "", EnumerationText(named));
 }
 
 std::string LambdaText(double lambda) {

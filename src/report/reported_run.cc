@@ -58,9 +58,12 @@ ReportedModel OpenModel(const fs::path& folder, const std::string& added,
     }
   }
   if (const fs::path file = folder / "plan/plan.json"; fs::exists(file)) {
-    model.has_plan =
-        model.diagnosis && IsPlanOf(HashFile(folder / "diagnosis/diagnosis.json"), file);
-    if (!model.has_plan) leave_out("plan", "diagnosis", "plan");
+    if (!model.diagnosis || !IsPlanOf(HashFile(folder / "diagnosis/diagnosis.json"), file))
+      leave_out("plan", "diagnosis", "plan");
+    else if (IsPlanOfAnotherFormat(file))
+      leave_out("plan", "version of Lacuna", "plan");
+    else
+      model.has_plan = true;
   }
   return model;
 }

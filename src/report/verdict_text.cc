@@ -173,6 +173,20 @@ std::vector<std::string> RefutedSentences(const DiagnosisRecord& diagnosis) {
   return sentences;
 }
 
+// The effects that would be refuted, had their sizes not ended at the limit of what is plausible.
+std::vector<std::string> NotRefutedSentences(const DiagnosisRecord& diagnosis) {
+  std::vector<std::string> sentences;
+  for (const RecordedEffect& effect : diagnosis.ranking)
+    if (effect.HasUsableRefit() && effect.refit->fails_at_limit && effect.refit->evidence > 0)
+      sentences.push_back(fmt::format(
+          "With {0} the model fits better, but it predicts the held-out frames worse. {0} is not "
+          "refuted: its size is at the limit of what is plausible. To decide, fit the model with "
+          "it "
+          "in a wider range (`lacuna add` writes the experiment), or from a better start.",
+          effect.type));
+  return sentences;
+}
+
 // Whether a pair of effects is among the hypotheses that together reach the probability that a
 // statement needs.
 bool KeepsPair(const DecisionRecord& decision) {
@@ -252,7 +266,8 @@ std::string ExplainVerdict(const DiagnosisRecord& diagnosis) {
     sentences.push_back(std::visit(ReasonSentence{diagnosis}, reason));
   if (!diagnosis.decision.probabilities.empty()) {
     sentences.push_back(ProbabilitySentence(diagnosis.decision));
-    for (const std::string& sentence : RefutedSentences(diagnosis)) sentences.push_back(sentence);
+    for (auto* described : {RefutedSentences, NotRefutedSentences})
+      for (std::string& sentence : described(diagnosis)) sentences.push_back(std::move(sentence));
     sentences.push_back(AdequacySentence(diagnosis.decision.adequacy));
   }
   return fmt::format("{}", fmt::join(sentences, " "));

@@ -313,8 +313,8 @@ MarkerTracks ReadC3d(const std::filesystem::path& file, FileTimes use) {
     bytes.Fail("has no frame rate; give `rate: … Hz` under `frames` in recording.yaml");
   if (format.other_rate > 0 && use == FileTimes::kUsed)
     tracks.warnings.push_back(fmt::format(
-        "{}: its header states {:g} Hz and POINT:RATE {:g} Hz; the former is used, which "
-        "`rate` in recording.yaml replaces",
+        "{}: its header states {:g} Hz and POINT:RATE {:g} Hz; the former is used; `rate` in "
+        "recording.yaml overrides it",
         file.string(), format.rate, format.other_rate));
   if (format.rate > 0)
     tracks.times =

@@ -21,9 +21,8 @@ std::string SuggestedScale(const Intrinsics& k, int width, int height) {
   if (!(of_width > 0) || std::abs(of_width - of_height) > 0.15 * of_width) return "";
   const double scale = 0.5 * (of_width + of_height);
   return fmt::format(
-      "; its place suits images of {:.0f} × {:.0f} pixels: if the images were scaled, so must be "
-      "fx, "
-      "fy, cx and cy (here by {:.3g})",
+      "; it suits images of {:.0f} × {:.0f} pixels: if the images were scaled, fx, fy, cx and "
+      "cy must be scaled as well (here by {:.3g})",
       scale * width, scale * height, 1 / scale);
 }
 
@@ -101,11 +100,11 @@ std::string DoubtOfPoses(const std::vector<Eigen::Matrix3Xd>& views,
   double largest = 0;
   for (const Eigen::Matrix3Xd& view : views) largest = std::max(largest, BoundingBoxDiagonal(view));
   if (lonely < 0 && !(would_be_closer && spread > largest)) return "";
-  std::string text = lonely >= 0
-                         ? fmt::format("{}: its view shows nothing that another camera sees near; ",
-                                       cameras[static_cast<size_t>(lonely)].name)
-                         : std::string("the views hardly overlap; ");
-  text += fmt::format("the middles of the views lie up to {:.3g} m apart", spread);
+  std::string text =
+      lonely >= 0 ? fmt::format("{}: nothing that it sees is near what another camera sees; ",
+                                cameras[static_cast<size_t>(lonely)].name)
+                  : std::string("the views hardly overlap; ");
+  text += fmt::format("the centres of the views are up to {:.3g} m apart", spread);
   if (would_be_closer) {
     return text + fmt::format(", and only {:.3g} m with {} in place of {}", other_spread,
                               are_inverse ? "world_from_camera" : "camera_from_world",

@@ -208,8 +208,8 @@ MarkerTracks ReadMotiveCsv(const std::filesystem::path& file, FileTimes use) {
       MarkersOfMotive(above[0], above[1], above[above.size() - 2], axes);
   if (markers.empty())
     throw InputError({file.string()},
-                     "has no columns of the type Marker; positions that a solver has computed for "
-                     "rigid bodies and bones are no measurements of a soft object");
+                     "has no columns of the type Marker; positions that a solver has computed "
+                     "for rigid bodies and bones are not measurements of a soft object");
   const std::map<std::string, std::string> pairs = PairsIn(lines[0]);
   MarkerTracks tracks;
   tracks.length_unit = UnitOfMotive(pairs);

@@ -73,8 +73,8 @@ void RefuseOtherUnit(const DelimitedTable& table, Eigen::Index column, double un
   if (other.empty())
     throw InputError(
         {table.file.string()},
-        fmt::format("has a column \"{}\" in \"{}\", which is no unit of {}; name another column, "
-                    "or rename this one and convert its values",
+        fmt::format("has a column \"{}\" in \"{}\", which is not a unit of {}; name another "
+                    "column, or rename this one and convert its values",
                     header, own, dimension.name));
   throw InputError({table.file.string()},
                    fmt::format("has a column \"{}\", but its values are read in another unit; say "

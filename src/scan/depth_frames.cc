@@ -61,7 +61,7 @@ std::string DescribeCorrection(const CameraCorrection& correction) {
                   Millimetres(correction.translation), correction.angle * 180 / std::numbers::pi,
                   Millimetres(correction.rms_before), Millimetres(correction.rms_after));
   if (correction.free_directions > 0) {
-    text += fmt::format(", {} of 6 directions of motion left as given", correction.free_directions);
+    text += fmt::format(", {} of 6 degrees of freedom left as given", correction.free_directions);
   }
   return text;
 }
@@ -77,8 +77,8 @@ void RequireSize(const DepthImage& depth, const std::filesystem::path& file,
   const Eigen::Vector2i size = DepthPngSize(first);
   if (depth.cols() == size[0] && depth.rows() == size[1]) return;
   throw InputError({file.string()},
-                   fmt::format("has {} × {} pixels where {} of the same camera has {} × {}; the "
-                               "intrinsics belong to one size",
+                   fmt::format("has {} × {} pixels where {} of the same camera has {} × {}; "
+                               "the intrinsics are valid for one size only",
                                depth.cols(), depth.rows(), first.string(), size[0], size[1]));
 }
 

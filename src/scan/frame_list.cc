@@ -114,7 +114,8 @@ std::string FillPattern(const std::string& pattern, int number) {
   const std::string behind = is_found ? match.suffix().str() : "";
   if (!is_found || std::regex_search(behind, placeholder)) {
     throw std::invalid_argument(fmt::format(
-        "got \"{}\"; expected one place for the number, e.g. frames/points_%02d.ply", pattern));
+        "got \"{}\"; expected one placeholder for the number, e.g. frames/points_%02d.ply",
+        pattern));
   }
   const int width = match[2].length() > 0 ? std::stoi(match[2]) : 0;
   const std::string digits =
@@ -185,8 +186,7 @@ std::vector<std::filesystem::path> ReadFrameFiles(const Config& config,
   } else if (given.size() == 1 && given[0].find_first_of("*?") != std::string::npos) {
     const std::vector<std::string> names = ExpandWildcards(data_folder, given[0]);
     if (names.empty()) {
-      config.Fail("files",
-                  fmt::format("no file is named like {}", (data_folder / given[0]).string()));
+      config.Fail("files", fmt::format("no file matches {}", (data_folder / given[0]).string()));
     }
     if (const std::optional<long> missing = FindMissingNumber(names)) {
       config.Fail("files", fmt::format("the frame numbered {} is missing among {} … {}; list the "

@@ -18,7 +18,8 @@ void CheckAscending(const Config& config, const std::string& key,
   for (size_t i = 0; i < times.size(); ++i) {
     if (!std::isfinite(times[i]) || (i > 0 && times[i] <= times[i - 1])) {
       config.Fail(
-          key, fmt::format("frame {}: the time {} s does not follow the one before", i, times[i]));
+          key, fmt::format("frame {}: the time {} s is not later than that of the frame before", i,
+                           times[i]));
     }
   }
 }
@@ -81,7 +82,7 @@ std::string DoubtOfReplacedTimes(const std::vector<double>& times,
   const double in_files_duration = in_files.back() - in_files.front();
   if (!(in_files_duration > 0) || !RatesDiffer(duration, in_files_duration, count - 1)) return "";
   return fmt::format(
-      "the times that recording.yaml gives last {:.4g} s, those of the files {:.4g} s ({:.4g} Hz "
+      "the times in recording.yaml span {:.4g} s, those of the files {:.4g} s ({:.4g} Hz "
       "on average); the former are used",
       duration, in_files_duration, static_cast<double>(count - 1) / in_files_duration);
 }

@@ -68,7 +68,7 @@ TrcHeader ReadTrcHeader(const std::filesystem::path& file,
     throw InputError(
         {file.string(), 2, 1},
         "has no tabs, which a TRC file has between its entries; a program or an editor "
-        "may have replaced them by blanks");
+        "may have replaced them by spaces");
   const std::vector<std::string_view> keys = SplitFields(lines[1], '\t');
   const std::vector<std::string_view> values = SplitFields(lines[2], '\t');
   TrcHeader header;
@@ -127,7 +127,7 @@ MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumn
   tracks.names = NamesIn(table, columns.x);
   if (tracks.names.empty()) {
     throw InputError({file.string(), 1, 1},
-                     fmt::format("no column is named like \"{}\"; its columns are {}", columns.x,
+                     fmt::format("no column matches \"{}\"; its columns are {}", columns.x,
                                  fmt::join(table.header, ", ")));
   }
   std::set<std::string> seen;

@@ -11,6 +11,7 @@
 #include "core/atomic_file.h"
 #include "core/csv_text.h"
 #include "core/error.h"
+#include "core/first_few.h"
 #include "core/quoted_text.h"
 #include "scan/frame_points.h"
 #include "scan/marker_files.h"
@@ -68,9 +69,26 @@ std::string DoubtOfZeros(const MarkerTracks& tracks, const std::filesystem::path
   }
   if (doubtful.empty()) return "";
   return fmt::format(
-      "{}: markers are at exactly (0, 0, 0), which counts as a measured place: {} of {} frames; "
-      "where it means that a marker was not seen, leave its entries empty",
+      "{}: markers are at exactly (0, 0, 0), which counts as a measured position: {} of {} "
+      "frames; if it means that a marker was not seen, leave its entries empty",
       file.string(), fmt::join(doubtful, ", "), tracks.positions.size());
+}
+
+// A warning about markers that no frame shows; empty where there are none.
+std::string DoubtOfUnseen(const MarkerTracks& tracks, const std::filesystem::path& file) {
+  std::vector<std::string> unseen;
+  for (size_t m = 0; m < tracks.names.size(); ++m) {
+    const bool is_seen = std::any_of(
+        tracks.positions.begin(), tracks.positions.end(), [m](const Eigen::Matrix3Xd& positions) {
+          return positions.col(static_cast<Eigen::Index>(m)).allFinite();
+        });
+    if (!is_seen) unseen.push_back(tracks.names[m]);
+  }
+  if (unseen.empty()) return "";
+  return fmt::format(
+      "{}: markers are not seen in any frame: {}; if they should be, look for empty or wrong "
+      "columns; if not, leave them out with `markers` under `frames`",
+      file.string(), FirstFew(unseen));
 }
 
 void CheckDistances(const MarkerFrames& source, int frame, const Eigen::Matrix3Xd& positions) {
@@ -110,8 +128,9 @@ void ReadSource(const Config& frames, const DataLocation& data, MarkerFrames* so
       frames.Fail("markers", fmt::format("lists {} twice", names[i]));
   }
   if (!names.empty()) source->tracks = SelectMarkers(source->tracks, names, source->file);
-  const std::string doubt = DoubtOfZeros(source->tracks, source->file);
-  if (!doubt.empty()) warnings->push_back(doubt);
+  for (auto* doubt_of : {DoubtOfZeros, DoubtOfUnseen})
+    if (std::string doubt = doubt_of(source->tracks, source->file); !doubt.empty())
+      warnings->push_back(std::move(doubt));
   source->places = ReadPlaces(frames, source->tracks.names);
   const std::string& unit = source->tracks.length_unit;
   if (!unit.empty() && unit != data.length_unit) {

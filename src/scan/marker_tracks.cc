@@ -28,8 +28,8 @@ void CheckTimes(const std::filesystem::path& file, const Eigen::VectorXd& times,
                    : "; `rate`, `times` or `times_file` in recording.yaml replace its times";
       throw InputError(
           {file.string()},
-          fmt::format("frame {}: the time {} s does not follow the one before{}{}", i, times[i],
-                      is_equal ? ", perhaps because it was rounded" : "", remedy));
+          fmt::format("frame {}: the time {} s is not later than that of the frame before{}{}", i,
+                      times[i], is_equal ? ", perhaps because it was rounded" : "", remedy));
     }
   }
 }
@@ -48,7 +48,7 @@ void WarnOfOtherRate(const std::filesystem::path& file, double rate, MarkerTrack
     return;
   tracks->warnings.push_back(
       fmt::format("{}: its header states {:g} Hz, but its times follow each other at {:.4g} Hz; "
-                  "its times are used, which `rate` in recording.yaml replaces",
+                  "its times are used; `rate` in recording.yaml overrides them",
                   file.string(), rate, typical));
 }
 
@@ -86,8 +86,8 @@ void NumberRepeatedNames(const std::filesystem::path& file, MarkerTracks* tracks
     name = fmt::format("{} ({})", own, number);
   }
   tracks->warnings.push_back(fmt::format(
-      "{}: several markers are called {}; all but the first of them have a number behind "
-      "their names, such as \"{} (2)\"",
+      "{}: several markers are called {}; all but the first of them get a number after the "
+      "name, such as \"{} (2)\"",
       file.string(), fmt::join(repeated, ", "), repeated.front()));
 }
 

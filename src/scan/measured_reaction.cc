@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "scan/component_columns.h"
 #include "scan/time_series.h"
 #include "scan/time_span.h"
 #include "scan/yaml_format.h"
@@ -13,45 +14,19 @@
 namespace lacuna {
 namespace {
 
-constexpr const char* kAxes[] = {"x", "y", "z"};
-
-// The components that are measured, and their columns in the file.
-std::vector<std::string> ReadComponents(const Config& item, MeasuredReaction* reaction) {
-  std::vector<std::string> columns;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!item.Has(kAxes[axis])) continue;
-    columns.push_back(item.Text(kAxes[axis]));
-    reaction->labels.emplace_back(kAxes[axis]);
-    reaction->directions.conservativeResize(3, reaction->directions.cols() + 1);
-    reaction->directions.rightCols<1>() = Eigen::Vector3d::Unit(axis);
-  }
-  if (!item.Has("along")) {
-    if (columns.empty())
-      item.Fail("file",
-                "says nothing about its direction: name the columns of the components `x`, `y`, "
-                "`z`, or give `along: [1, 0, 0]` and the column `value`");
-    return columns;
-  }
-  if (!columns.empty())
-    item.Fail("along", "the components x, y, z have columns already: give these or `along`");
-  const Eigen::Vector3d along = item.Vector("along", kDimensionless);
-  if (!(along.norm() > 0)) item.Fail("along", "expected a direction other than 0");
-  reaction->labels = {"along"};
-  reaction->directions = along.normalized();
-  return {item.Text("value")};
-}
-
 MeasuredReaction ReadReaction(const Config& item, const DataLocation& data, const FrameData& frames,
                               bool is_torque) {
   MeasuredReaction reaction;
   reaction.is_torque = is_torque;
   const Dimension& dimension = is_torque ? kTorque : kForce;
-  const std::vector<std::string> columns = ReadComponents(item, &reaction);
+  ComponentColumns components = ReadComponentColumns(item);
   const double sign = item.Choice<double>(
       "exerted_by", {{"grip", 1.0}, {"object", -1.0}, {"unknown", 0.0}}, "grip");
   reaction.sign_is_unknown = sign == 0;
   const ColumnUnit unit = ReadColumnUnit(item, "unit", dimension, reaction.Unit());
-  TimeSeries series = ReadColumns(item, data, frames, columns, unit, Rows::kMeasured);
+  TimeSeries series = ReadColumns(item, data, frames, components.columns, unit, Rows::kMeasured);
+  reaction.labels = std::move(components.labels);
+  reaction.directions = std::move(components.directions);
   reaction.times = std::move(series.times);
   reaction.values = std::move(series.values);
   if (sign < 0) reaction.values *= -1;

@@ -55,12 +55,13 @@ std::string DoubtOfTurn(const RecordedGrip& grip) {
   const std::vector<std::string>& names = grip.turn_columns;
   if (std::any_of(names.begin(), names.end(), IsQuaternionName))
     return fmt::format(
-        "its turn is read from the columns {}: components of a quaternion are no rotation vector",
+        "its turn is read from the columns {}: the components of a quaternion are not a "
+        "rotation vector",
         fmt::join(names, ", "));
   if (std::any_of(names.begin(), names.end(), IsEulerName) && TurnsAboutSeveralAxes(grip.rotations))
     return fmt::format(
-        "its turn is read from the columns {}: angles about several axes, one after the other, are "
-        "no rotation vector",
+        "its turn is read from the columns {}: Euler angles, about several axes one "
+        "after the other, are not a rotation vector",
         fmt::join(names, ", "));
   const double turns = RangeOfPath(grip).turn / (2 * std::numbers::pi);
   if (turns <= 1) return "";
@@ -104,8 +105,9 @@ std::string DoubtOfJump(const RecordedGrip& grip, double size, double last) {
     const double step = (grip.displacements.col(k) - grip.displacements.col(k - 1)).norm();
     if (step <= size) continue;
     return fmt::format(
-        "it moves by {:.3g} mm from {} to {}, between two rows, while the object measures {:.3g} "
-        "mm; the motion counts from the first row, which must belong to the undeformed place",
+        "it moves by {:.3g} mm from {} to {}, between two rows, while the object is {:.3g} mm "
+        "in size; the motion is relative to the first row, which must belong to the undeformed "
+        "object",
         1e3 * step, TimeText(grip.times[k - 1]), TimeText(grip.times[k]), 1e3 * size);
   }
   return "";

@@ -33,7 +33,7 @@ class HeaderReader {
         throw InputError({file_.string()}, "is not a PCD file or ends within its header");
       ++line_;
       const std::string_view line = Trim(content_.substr(at_, end - at_));
-      if (line.empty() && end > at_) Fail("holds a line of blanks in its header");
+      if (line.empty() && end > at_) Fail("has a line of spaces in its header");
       at_ = end + 1;
       if (!line.empty() && line[0] != '#') Take(SplitFields(line, ' '));
     }

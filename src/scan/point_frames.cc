@@ -139,9 +139,10 @@ std::vector<Eigen::Index> RowsAt(const Eigen::Matrix3Xd& wanted,
   }
   if (!is_found)
     throw InputError({file.string()},
-                     "has no point at a place of the first file, so that its points cannot be "
-                     "recognised: their places in the reference state differ, or are those of the "
-                     "deformed state, which `columns` says by `places: deformed`");
+                     "has no point at a position of the first file, so that its points cannot "
+                     "be identified: either their positions in the reference state differ, or "
+                     "they are those of the deformed state, for which `columns` needs `places: "
+                     "deformed`");
   return rows;
 }
 
@@ -162,8 +163,9 @@ void ReadSteps(const Config& frames, const DataLocation& data, PointFrames* sour
   const std::string step = columns ? columns->Text("step", time) : "";
   if (step.empty())
     frames.Fail("file",
-                "one file holds all frames where `columns: {step: …}` or `{time: …}` names the "
-                "column that tells them apart; a file for each frame belongs into `files`");
+                "one file can hold all frames only if `columns: {step: …}` or `{time: …}` "
+                "names the column that tells them apart; list separate files of the frames "
+                "under `files`");
   const std::filesystem::path file = data.folder / frames.Text("file");
   if (!std::filesystem::is_regular_file(file))
     frames.Fail("file", "there is no file " + file.string());
@@ -238,14 +240,15 @@ std::string DoubtOfPlaces(const CorrelationTable& first, const CorrelationTable&
   constexpr double kShare = 0.25;
   if (!first.places_are_deformed && moved > kShare * displaced && apart < kShare * moved)
     return fmt::format(
-        "{}: the places change from frame to frame as the displacements do, so that they are those "
-        "of the deformed state; they are taken for those of the reference state unless `columns` "
-        "says `places: deformed`",
+        "{}: the positions change from frame to frame as the displacements do, so they are "
+        "probably those of the deformed state; they are read as those of the reference state "
+        "unless `columns` says `places: deformed`",
         file.string());
   if (first.places_are_deformed && displaced > 0 && moved < kShare * displaced)
     return fmt::format(
-        "{}: the places are the same in all frames, so that they are those of the reference state; "
-        "they are taken for those of the deformed state unless `columns` names them",
+        "{}: the positions are the same in all frames, so they are probably those of the "
+        "reference state; they are read as those of the deformed state unless `columns` names "
+        "them",
         file.string());
   return "";
 }
@@ -258,7 +261,7 @@ void UseGivenNormals(const PointFrames& source, const std::filesystem::path& fil
   frame->cloud.normals = UnitNormals(frame->cloud.normals, source.world_from_file.rotation);
   if (zero > 0)
     frame->notes.push_back(fmt::format(
-        "{}: {} of {} normals are zero, so that none of the given ones is used{}", file.string(),
+        "{}: {} of {} normals are zero, so none of the given normals is used{}", file.string(),
         zero, given, source.tracked ? "" : ": all are estimated from the points"));
 }
 

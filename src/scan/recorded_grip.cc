@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "geometry/rotation.h"
+#include "geometry/smooth_path.h"
 #include "scan/column_units.h"
 #include "scan/time_series.h"
 #include "scan/yaml_format.h"
@@ -92,20 +94,16 @@ struct PathPose {
 };
 
 PathPose PoseAt(const RecordedGrip& grip, double time) {
-  PathPose pose{InterpolateSmoothly(grip.times, grip.displacements, time)};
-  if (grip.rotations.cols() > 0)
-    pose.rotation = InterpolateSmoothly(grip.times, grip.rotations, time);
-  return pose;
-}
-
-// The pose at a time t behind the last row, at time T: the path before T, reflected through its
-// last point, x(t) = 2 x(T) − x(2T − t). The velocity does not jump there, and the errors of single
-// rows are not magnified, as they would be along the tangent.
-PathPose PoseBehindTheLastRow(const RecordedGrip& grip, double time) {
-  const Eigen::Index last = grip.times.size() - 1;
-  const PathPose before = PoseAt(grip, 2 * grip.times[last] - time);
-  PathPose pose{2 * grip.displacements.col(last) - before.displacement};
-  if (grip.rotations.cols() > 0) pose.rotation = 2 * grip.rotations.col(last) - before.rotation;
+  const std::span<const double> times(grip.times.data(), static_cast<size_t>(grip.times.size()));
+  const auto at = [&](const Eigen::Matrix3Xd& rows) {
+    return SmoothPath(times,
+                      [&rows](size_t k) -> Eigen::Vector3d {
+                        return rows.col(static_cast<Eigen::Index>(k));
+                      })
+        .At(time);
+  };
+  PathPose pose{at(grip.displacements)};
+  if (grip.rotations.cols() > 0) pose.rotation = at(grip.rotations);
   return pose;
 }
 
@@ -129,12 +127,6 @@ Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time) {
 
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time, double since) {
   return MotionBetween(grip, PoseAt(grip, since), PoseAt(grip, time));
-}
-
-Eigen::Isometry3d ContinuedMotionAt(const RecordedGrip& grip, double time, double since) {
-  const Eigen::Index rows = grip.times.size();
-  if (rows < 2 || time <= grip.times[rows - 1]) return MotionAt(grip, time, since);
-  return MotionBetween(grip, PoseAt(grip, since), PoseBehindTheLastRow(grip, time));
 }
 
 PathRange RangeOfPath(const RecordedGrip& grip) {

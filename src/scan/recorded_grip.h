@@ -47,17 +47,15 @@ struct RecordedGrip {
   bool turns_in_radians = false;                    // the numbers in these columns
 };
 
-// The rigid motion of a grip of motion kGiven from its undeformed place. Between the given times it
-// is interpolated smoothly (time_series.h), because a path with corners would excite vibrations.
-// The grip is at its undeformed place at the time `since` (s), or where none is given in the first
-// row of its path.
+// The rigid motion of a grip of motion kGiven from its undeformed place, where it is at the time
+// `since` (s) or, if none is given, in the first row of its path. Its displacement and its rotation
+// vector follow a smooth path through the rows (geometry/smooth_path.h), because corners would
+// excite vibrations. Before the first row the grip rests. After the last row, at the time T, it
+// goes on as far as it came in an equally long time before: x(T + s) = 2 x(T) − x(T − s), at most
+// as far as it came since the first row. The last time step of a prediction ends after the last
+// frame, in which the grip need not have stopped, and a jump of its velocity would be a shock.
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time);
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time, double since);
-// MotionAt(), but behind the last row the grip goes on as it has come: its displacement and its
-// rotation vector are the path before, reflected through its last point. MotionAt() leaves it at
-// rest. A model needs this: the last time step of a prediction ends behind the last frame, in which
-// the grip need not have stopped, and a jump of its velocity would be a shock.
-Eigen::Isometry3d ContinuedMotionAt(const RecordedGrip& grip, double time, double since);
 
 // The largest distance, m, from the first row, and the largest angle, rad, turned since; 0 unless
 // the path is given.

@@ -112,8 +112,8 @@ Frame LoadFirstFrame(const Recording& recording) {
 void WarnOfDroppedPoints(const Frame& first, Recording* recording) {
   if (first.repeated_count == 0) return;
   recording->warnings.push_back(fmt::format(
-      "frame 0: {} of {} points repeat exactly, as where a camera measured nothing; they are not "
-      "used",
+      "frame 0: {} of {} points repeat exactly, as happens where a camera measured nothing; "
+      "they are not used",
       first.repeated_count, first.row_count));
 }
 
@@ -161,7 +161,8 @@ Recording ReadDescribed(const std::filesystem::path& path) {
         instrument->Choice<bool>("shape", {{"surface", false}, {"volume", true}}, "surface");
     if (!HasTrackedPoints(recording) && recording.markers.names.empty())
       config.Fail("instrument",
-                  "averages tracked points and markers, which the frames do not have");
+                  "describes the averaging of tracked points or markers, which the frames do "
+                  "not have");
   }
   recording.object = ReadObject(config, recording, frames);
   for (const std::string& doubt :

@@ -66,8 +66,8 @@ void DecimalCommas::RefuseThousands(const std::filesystem::path& file, char deli
   decimal[decimal.find(',')] = '.';
   throw InputError(
       {file.string(), line_, column_},
-      fmt::format("got \"{}\", which is {} with a separator of thousands and {} with a "
-                  "decimal comma; write the numbers of the file without such commas",
+      fmt::format("got \"{}\", which is {} with a thousands separator and {} with a decimal "
+                  "comma; write the numbers of the file without such commas",
                   doubtful_, thousands, decimal));
 }
 

@@ -11,7 +11,6 @@
 #include "core/atomic_file.h"
 #include "core/npy.h"
 #include "core/quantity.h"
-#include "geometry/hermite.h"
 #include "scan/column_units.h"
 #include "scan/table_header.h"
 
@@ -77,7 +76,8 @@ Eigen::VectorXd TimesOf(const Config& config, const DelimitedTable& table, const
   if (time.empty()) {
     if (table.values.rows() != static_cast<Eigen::Index>(frames.times.size()))
       config.Fail("file",
-                  fmt::format("{} has {} rows for {} frames; name its column `time`",
+                  fmt::format("{} has {} rows for {} frames; say with `time` which column "
+                              "holds the times",
                               table.file.string(), table.values.rows(), frames.times.size()));
     return AsVector(frames.times);
   }
@@ -86,8 +86,8 @@ Eigen::VectorXd TimesOf(const Config& config, const DelimitedTable& table, const
   RefuseOtherUnit(table, column, unit, kTime, "time_unit");
   for (const std::string& name : names)
     if (RequireColumn(table, name) == column)
-      config.Fail("time", fmt::format("is column {} of {}, from which values are read, too; name "
-                                      "the columns of the values",
+      config.Fail("time", fmt::format("is column {} of {}, from which values are also read; "
+                                      "name the columns of the values",
                                       column + 1, table.file.string()));
   return unit * table.values.col(column);
 }
@@ -223,23 +223,6 @@ Eigen::VectorXd InterpolateLinearly(const Eigen::VectorXd& times,
                                     const Eigen::Ref<const Eigen::MatrixXd>& values, double time) {
   const auto [left, right, t] = FindInterval(times, time);
   return (1 - t) * values.col(left) + t * values.col(right);
-}
-
-Eigen::Vector3d InterpolateSmoothly(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values,
-                                    double time) {
-  const auto [left, right, t] = FindInterval(times, time);
-  if (left == right) return values.col(left);
-  const Eigen::Index last = times.size() - 1;
-  const auto slope = [&](Eigen::Index k) -> Eigen::Vector3d {  // between k and k + 1
-    return (values.col(k + 1) - values.col(k)) / (times[k + 1] - times[k]);
-  };
-  const auto knot = [&](Eigen::Index k) -> Knot<Eigen::Vector3d> {
-    if (k == 0) return {values.col(0), slope(0)};
-    if (k == last) return {values.col(last), slope(last - 1)};
-    const double before = times[k] - times[k - 1], behind = times[k + 1] - times[k];
-    return {values.col(k), VelocityOfParabola(slope(k - 1), before, slope(k), behind)};
-  };
-  return Interpolate(knot(left), knot(right), times[right] - times[left], t).position;
 }
 
 void WriteTimeSeries(const std::filesystem::path& file, const Eigen::VectorXd& times,

@@ -58,14 +58,10 @@ std::string PlaceOfRow(const DelimitedTable& table, Eigen::Index row);
 Eigen::MatrixXd ColumnsOf(const DelimitedTable& table, const std::vector<std::string>& names,
                           double unit);
 
-// Both interpolate `values` (c × k) given at `times` (k, ascending) and stay constant before the
-// first time and after the last. The first is piecewise linear. The second is a cubic Hermite
-// spline whose velocity at each time is that of the parabola through it and its two neighbours, so
-// that the velocity is continuous.
+// Interpolates `values` (c × k) given at `times` (k, ascending) linearly. Before the first time and
+// after the last they are constant.
 Eigen::VectorXd InterpolateLinearly(const Eigen::VectorXd& times,
                                     const Eigen::Ref<const Eigen::MatrixXd>& values, double time);
-Eigen::Vector3d InterpolateSmoothly(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values,
-                                    double time);
 
 // Writes a CSV with the column time and those of `values` (one row for each of `names`), in SI.
 void WriteTimeSeries(const std::filesystem::path& file, const Eigen::VectorXd& times,

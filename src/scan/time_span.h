@@ -15,8 +15,8 @@ namespace lacuna {
 double TimeMargin(const std::vector<double>& frame_times);
 
 // Whether a series at `times` (k ≥ 1, s, ascending) covers the time from `first` to `last` (s) up
-// to `margin` (s) or rounding. Interpolation is constant beyond the ends of a series
-// (time_series.h).
+// to `margin` (s) or rounding. Beyond its ends the values of a series are constant (time_series.h);
+// the path of a grip goes on after its last row (recorded_grip.h).
 bool CoversTimes(const Eigen::VectorXd& times, double first, double last, double margin);
 
 // A sentence about a series of `values` (c × k) at `times` (k, s, ascending) beside a recording

@@ -49,7 +49,7 @@ std::string Describe(const SweepCase& entry) {
   return text;
 }
 
-void SaveIdentity(const SweepIdentity& identity, const std::filesystem::path& folder) {
+void WriteIdentity(const SweepIdentity& identity, const std::filesystem::path& folder) {
   Write(folder / "sweep.json", {{"schema_version", kSchemaVersion},
                                 {"name", identity.name},
                                 {"command", NameOf(identity.command)}});
@@ -69,7 +69,7 @@ SweepIdentity LoadIdentity(const std::filesystem::path& folder) {
   });
 }
 
-void SaveCase(const SweepCase& entry, const std::filesystem::path& case_folder) {
+void WriteCase(const SweepCase& entry, const std::filesystem::path& case_folder) {
   nlohmann::ordered_json changes = nlohmann::ordered_json::object();
   for (const CaseChange& change : entry.changes) changes[change.field] = change.value;
   Write(case_folder / "case.json", {{"schema_version", kSchemaVersion},
@@ -100,7 +100,7 @@ std::vector<SweepCase> LoadCases(const std::filesystem::path& folder) {
   return cases;
 }
 
-void SaveOutcome(const CaseOutcome& outcome, const std::filesystem::path& case_folder) {
+void WriteOutcome(const CaseOutcome& outcome, const std::filesystem::path& case_folder) {
   nlohmann::ordered_json numbers = nlohmann::ordered_json::object(), words = numbers;
   for (const auto& [name, value] : outcome.numbers)
     numbers[name] = NumberOrNull<nlohmann::ordered_json>(value);

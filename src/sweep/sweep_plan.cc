@@ -186,7 +186,7 @@ fs::path PartialFolder(const fs::path& folder, const SweepCase& entry) {
   return folder / ("." + entry.name + ".partial");
 }
 
-void WriteCase(const SweepCase& entry, const CaseFiles& files, const fs::path& folder) {
+void WriteCaseFolder(const SweepCase& entry, const CaseFiles& files, const fs::path& folder) {
   const fs::path partial = PartialFolder(folder, entry);
   fs::remove_all(partial);
   MakeFolder(partial);
@@ -194,7 +194,7 @@ void WriteCase(const SweepCase& entry, const CaseFiles& files, const fs::path& f
     MakeFolder((partial / name).parent_path());
     WriteFileAtomically(partial / name, text);
   }
-  SaveCase(entry, partial);
+  WriteCase(entry, partial);
   fs::rename(partial, folder / entry.name);
 }
 
@@ -213,11 +213,11 @@ SweepPlan PlanSweep(const Config& sweep_file, const fs::path& given_folder) {
   if (PlannedCases(folder).size() != additions.before.size())
     additions = CheckedAdditions(sweep_file, file, folder);
 
-  if (!fs::exists(folder / "sweep.json")) SaveIdentity(file.identity, folder);
+  if (!fs::exists(folder / "sweep.json")) WriteIdentity(file.identity, folder);
   SweepPlan plan{std::move(additions.before), static_cast<int>(additions.added.size()),
                  std::move(additions.absent)};
   for (const auto& [entry, files] : additions.added) {
-    WriteCase(entry, files, folder);
+    WriteCaseFolder(entry, files, folder);
     plan.cases.push_back(entry);
   }
   SyncFolder(folder);

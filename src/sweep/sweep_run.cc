@@ -77,7 +77,7 @@ void RunCase(const SweepIdentity& identity, const SweepCase& entry, const fs::pa
     outcome.message = problem.what();
   }
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  SaveOutcome(outcome, case_folder);
+  WriteOutcome(outcome, case_folder);
   if (terminal < 0) return;
   dprintf(terminal, "%s", EndOf(entry, outcome).c_str());
   close(terminal);
@@ -92,7 +92,7 @@ void KeepCrash(const SweepCase& entry, const fs::path& case_folder, const std::s
   if (!claim.holds() || (before && (before->done || !retries))) return;
   CaseOutcome outcome;
   outcome.message = reason + "; its last output is in log.txt";
-  SaveOutcome(outcome, case_folder);
+  WriteOutcome(outcome, case_folder);
   fmt::print(stderr, "{}", EndOf(entry, outcome));
 }
 

@@ -205,7 +205,7 @@ std::string TableInWords(const SweepTable& table) {
   return text;
 }
 
-void SaveTable(const SweepTable& table, const std::filesystem::path& folder) {
+void WriteTable(const SweepTable& table, const std::filesystem::path& folder) {
   WriteFileAtomically(folder / "table.txt", TableInWords(table));
   WriteFileAtomically(folder / "table.csv", CsvOf(CellsForCsv(table)));
   WriteFileAtomically(folder / "table.json", JsonOf(table).dump(2) + "\n");

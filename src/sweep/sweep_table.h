@@ -38,7 +38,7 @@ SweepTable CollectSweep(const std::filesystem::path& folder);
 std::string TableInWords(const SweepTable& table);
 // Writes table.txt (as above), table.csv and table.json (with all numbers and words) into the
 // folder. The same outcomes give the same bytes.
-void SaveTable(const SweepTable& table, const std::filesystem::path& folder);
+void WriteTable(const SweepTable& table, const std::filesystem::path& folder);
 
 // A CSV table with the columns number, case and experiment and one for each field that some case
 // changes.

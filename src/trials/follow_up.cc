@@ -123,7 +123,7 @@ FollowUp Follow(const PlannedCase& planned, const PlannedOutcome& outcome, int n
   // Its only reading, which recording.yaml describes already.
   if (seen.reading) WriteReaction(folder / "measured", *seen.reading, 1);
   made.outcome = RunCase(own, folder);
-  SaveTrialOutcome(made.outcome, folder);
+  WriteTrialOutcome(made.outcome, folder);
   return made;
 }
 
@@ -196,9 +196,7 @@ TrueRecording RecordTruth(const TrialCase& trial, const Protocol& protocol,
                           int number, bool rough) {
   const RecordedGrip& clamp = planned.item.recording.object.grips.at(0);
   const std::vector<double>& times = planned.item.recording.times;
-  const auto motion_of_clamp = [&](double time) {
-    return ContinuedMotionAt(clamp, time, clamp.times[0]);
-  };
+  const auto motion_of_clamp = [&](double time) { return MotionAt(clamp, time); };
   const TrialProcedure procedure{times, motion_of_clamp, PlannedHoldForce(protocol, hold_force),
                                  protocol.weight, CellTimes(trial, number, times)};
   const TrueMotion motion = SimulateTruth(trial, procedure, rough);
@@ -222,10 +220,10 @@ std::vector<fs::path> FollowUpFolders(const fs::path& own) {
 bool RunFollowUps(const fs::path& folder, int workers) {
   const std::vector<fs::path> open = OpenCasesIn(folder);
   return WorkOn(open, kFollowUpFile, workers,
-                [&](size_t k) { SaveFollowUps(MakeFollowUps(open[k]), open[k]); });
+                [&](size_t k) { WriteFollowUps(MakeFollowUps(open[k]), open[k]); });
 }
 
-void SaveFollowUps(const CaseFollowUps& made, const fs::path& own) {
+void WriteFollowUps(const CaseFollowUps& made, const fs::path& own) {
   const nlohmann::json all = {{"schema_version", 1},
                               {"message", made.message},
                               {"best", ToJson(made.best)},

@@ -296,7 +296,7 @@ bool RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& f
     // The truth comes first, so that a draw that cannot be simulated is reported.
     const TrialCase trial = DrawIntervalCase(suite, static_cast<int>(k));
     const bool is_new = !std::filesystem::exists(draws[k] / kTruthFile);
-    if (is_new) SaveCase(trial, draws[k]);
+    if (is_new) WriteCase(trial, draws[k]);
     if (is_new || !std::filesystem::exists(draws[k] / kExperimentFile))
       SimulateCase(trial, draws[k]);
     FitDraw(draws[k]);
@@ -339,7 +339,7 @@ std::string IntervalReportInWords(const IntervalReport& report) {
   return text;
 }
 
-void SaveIntervalReport(const IntervalReport& report, const std::filesystem::path& folder) {
+void WriteIntervalReport(const IntervalReport& report, const std::filesystem::path& folder) {
   nlohmann::json tallies = nlohmann::json::array();
   LineChart chart{"Where the truth lies in the posterior",
                   "p",

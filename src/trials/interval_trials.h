@@ -85,7 +85,7 @@ IntervalReport ReportIntervals(const std::filesystem::path& folder);
 std::string IntervalReportInWords(const IntervalReport& report);
 // Writes intervals.txt, intervals.json and intervals.svg: for each parameter, the share of draws
 // whose truth lies below the p-quantile of its posterior, over p.
-void SaveIntervalReport(const IntervalReport& report, const std::filesystem::path& folder);
+void WriteIntervalReport(const IntervalReport& report, const std::filesystem::path& folder);
 
 }  // namespace lacuna
 

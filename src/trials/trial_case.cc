@@ -315,7 +315,7 @@ std::string TextOfCase(const TrialCase& trial) {
   return all.dump(2) + "\n";
 }
 
-void SaveCase(const TrialCase& trial, const std::filesystem::path& folder) {
+void WriteCase(const TrialCase& trial, const std::filesystem::path& folder) {
   WriteFileAtomically(folder / kTruthFile, TextOfCase(trial));
 }
 

@@ -158,7 +158,7 @@ std::string ReportInWords(const TrialReport& report) {
   return text;
 }
 
-void SaveTrialReport(const TrialReport& report, const std::filesystem::path& folder) {
+void WriteTrialReport(const TrialReport& report, const std::filesystem::path& folder) {
   nlohmann::json tallies = nlohmann::json::array();
   for (const TrialTally& tally : report.tallies)
     tallies.push_back({{"group", tally.group},

@@ -53,7 +53,7 @@ TrialReport ReportTrials(const std::filesystem::path& folder);
 // The tables as plain text.
 std::string ReportInWords(const TrialReport& report);
 // Writes report.json and report.txt into the folder.
-void SaveTrialReport(const TrialReport& report, const std::filesystem::path& folder);
+void WriteTrialReport(const TrialReport& report, const std::filesystem::path& folder);
 
 }  // namespace lacuna
 

@@ -130,13 +130,13 @@ TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem:
   const Calibration calibration =
       FitWithAdaptiveTimeStep(reference.mesh, &study, &progress).calibration;
   const CalibrationProblem problem(study, reference.mesh);
-  if (calibration.estimates.empty()) throw InputError(folder.string() + ": " + calibration.message);
+  if (!calibration.HasSolution()) throw InputError(folder.string() + ": " + calibration.message);
   DiagnosisOptions options;
   // Before the diagnosis, only the list of effects removed from the library is used.
   std::ifstream without(folder / kWithoutFile);
   for (std::string type; std::getline(without, type);) options.without.push_back(type);
   const Diagnosis diagnosis = Diagnose(problem, calibration.parameters, options, &progress);
-  SaveDecisionInput(diagnosis.decision_input, output / kDecisionFolder);
+  WriteDecisionInput(diagnosis.decision_input, output / kDecisionFolder);
   WriteDiagnosisFile(RecordOf(diagnosis), output / kDiagnosisFile);
 
   TrialOutcome outcome;
@@ -151,13 +151,13 @@ TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem:
       diagnosis.errors.without_nuisances * EstimatedOverTrueNoise(trial, problem);
   if (!trial.hidden.empty()) Compare(trial, problem, calibration.parameters, diagnosis, &outcome);
   if (trial.group == TrialGroup::kRemoved)
-    SaveDecisionInput(InputWithRemoved(problem, calibration.parameters, diagnosis.time_step),
-                      output / kWithRemovedFolder);
+    WriteDecisionInput(InputWithRemoved(problem, calibration.parameters, diagnosis.time_step),
+                       output / kWithRemovedFolder);
   outcome.simulated = SimulatePowerOfCase(trial, diagnosis.decision_input, output);
   return outcome;
 }
 
-void SaveTrialOutcome(const TrialOutcome& outcome, const std::filesystem::path& folder) {
+void WriteTrialOutcome(const TrialOutcome& outcome, const std::filesystem::path& folder) {
   const nlohmann::json all = {
       {"schema_version", kSchemaVersion},
       {"verdict", VerdictName(outcome.verdict)},
@@ -209,14 +209,14 @@ bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output
   outcome.named = decision.names;
   outcome.probabilities = decision.record.probabilities;
   outcome.simulated = SimulatePowerOfCase(trial, input, output);
-  SaveTrialOutcome(outcome, output);
+  WriteTrialOutcome(outcome, output);
   return true;
 }
 
 bool RunTrials(const std::filesystem::path& folder, int workers) {
   const std::vector<std::filesystem::path> cases = CasesIn(folder);
   return WorkOn(cases, kOutcomeFile, workers,
-                [&](size_t k) { SaveTrialOutcome(RunCase(cases[k], cases[k]), cases[k]); });
+                [&](size_t k) { WriteTrialOutcome(RunCase(cases[k], cases[k]), cases[k]); });
 }
 
 }  // namespace lacuna

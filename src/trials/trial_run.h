@@ -49,7 +49,7 @@ std::vector<std::string> RankedTypes(const std::vector<RankedEffect>& effects);
 TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem::path& output);
 
 // Write and read outcome.json in a folder. Both throw InputError if the file cannot be used.
-void SaveTrialOutcome(const TrialOutcome& outcome, const std::filesystem::path& folder);
+void WriteTrialOutcome(const TrialOutcome& outcome, const std::filesystem::path& folder);
 TrialOutcome LoadTrialOutcome(const std::filesystem::path& folder);
 
 // Decides again upon what RunCase() has kept in `output`, with the rules as they are now, and

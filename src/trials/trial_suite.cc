@@ -318,7 +318,7 @@ bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
     }
     trial = DrawnAgain(trial);
   }
-  SaveCase(trial, own);
+  WriteCase(trial, own);
   return true;
 }
 

@@ -73,6 +73,57 @@ TEST(LinearGaussianModel, RecoversTheTruth) {
   EXPECT_GT(fit.log_evidence - model.Fit({0, 1}, 1).log_evidence, 100);
 }
 
+// The changes that minimise ‖r + A δ‖² + Σ (δ/s)² with the changes of `held` at 0, from a QR
+// factorisation of the other columns, below which their priors stand as further rows.
+Eigen::VectorXd LeastSquares(const Eigen::VectorXd& r, const Eigen::MatrixXd& A, double s,
+                             unsigned held) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index k = 0; k < A.cols(); ++k)
+    if ((held >> k & 1) == 0) free.push_back(k);
+  const Eigen::Index count = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd rows(A.rows() + count, count);
+  rows << A(Eigen::all, free), Eigen::MatrixXd::Identity(count, count) / s;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(rows.rows());
+  right.head(r.size()) = -r;
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(A.cols());
+  change(free) = rows.householderQr().solve(right);
+  return change;
+}
+
+// The quadratic programme is solved by trying every set of columns that could be held at 0. In
+// several of the cases, a change that is negative without the restriction is positive with it,
+// because another one that was negative is held.
+TEST(LinearGaussianModel, FindsTheBestOfTheChangesThatMustBePositive) {
+  constexpr int kFree = 1, kPositive = 5;  // columns
+  constexpr double kDeviation = 2;
+  std::mt19937 random(19);
+  std::vector<LinearPrior> priors(kFree + kPositive, {0, kDeviation, true});
+  priors[0].positive = false;
+  int turned = 0;
+  for (int trial = 0; trial < 30; ++trial) {
+    // Columns that are alike, or opposite.
+    Eigen::MatrixXd A = 0.3 * Random(kRows, kFree + kPositive, &random);
+    A += Random(kRows, 1, &random) * Random(1, kFree + kPositive, &random);
+    const Eigen::VectorXd r = 3 * Random(kRows, 1, &random);
+    const auto cost = [&](const Eigen::VectorXd& change) {
+      return (r + A * change).squaredNorm() + change.squaredNorm() / (kDeviation * kDeviation);
+    };
+    Eigen::VectorXd best;
+    for (unsigned held = 0; held < 1u << kPositive; ++held) {
+      const Eigen::VectorXd change = LeastSquares(r, A, kDeviation, held << kFree);
+      if (change.tail(kPositive).minCoeff() < 0) continue;
+      if (best.size() == 0 || cost(change) < cost(best)) best = change;
+    }
+    const LinearFit fit = LinearGaussianModel(r, A, priors).FitAll(1);
+    EXPECT_LT((fit.change - best).norm(), 1e-9) << trial;
+    EXPECT_NEAR(fit.misfit, (r + A * best).squaredNorm(), 1e-8) << trial;
+    const Eigen::VectorXd unrestricted = LeastSquares(r, A, kDeviation, 0);
+    const auto negative = (unrestricted.tail(kPositive).array() < 0);
+    turned += (negative && best.tail(kPositive).array() > 0).any() ? 1 : 0;
+  }
+  EXPECT_GE(turned, 5);
+}
+
 TEST(LinearGaussianModel, RemovesColumnsThatAreProjectedOut) {
   std::mt19937 random(7);
   Eigen::MatrixXd A = Random(kRows, 4, &random);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/linear_evidence.h"
+#include "analysis/normal_distribution.h"
 
 namespace lacuna {
 namespace {
@@ -81,12 +82,41 @@ TEST(LogOrthantFactor, IsThatOfOneTruncatedPrior) {
   EXPECT_EQ(LogOrthantFactor({}, {}), 0);
 }
 
+// Two amounts with unit deviations. ln 4P was made in Python with the module decimal and 50 digits,
+// from the integral in positive_normal.h by the tanh-sinh rule on both sides of its largest value,
+// with the Φ of normal_distribution_test.cc. Where the rounding allows it, the same digits follow
+// from P = Φ(a) Φ(b) + 1/2π ∫ from 0 to ρ of exp(−(a² − 2abt + b²)/(2 (1 − t²)))/√(1 − t²) dt
+// (R. L. Plackett, Biometrika 41, 1954).
+TEST(LogOrthantFactor, IsAccurateForTwoAmountsFromTailToTail) {
+  struct Pair {
+    double a, b, correlation, factor;
+  };
+  constexpr Pair kPairs[] = {{0.5, -0.25, 0, 0.104286181020099171},
+                             {0.5, -0.25, -0.5, -0.199950421149190786},
+                             {0.5, -0.25, 1 - 0x1p-30, 0.473232596308755564},
+                             {2, 1.5, 0.875, 1.31345542405606723},
+                             {8, 9, 0, 1.38629436111989},
+                             {-3, -4, 0.9375, -8.97959659263613846},
+                             {-3, -4, -0.9375, -203.583369057519249},
+                             {-25, 3, 0.25, -315.253113646900368},
+                             {-25, -24.5, 0x1p-30 - 1, -657733976102.43868},
+                             {-40, -45, -0.5, -3625.85978787807926},
+                             {-40, -45, 0.5, -1223.63362772769835},
+                             {38, -38.5, -0.9375, -744.308975964387936},
+                             {-1000, -900, 0.25, -725347.011562527105}};
+  for (const Pair& pair : kPairs)
+    EXPECT_NEAR(
+        LogOrthantFactor(Eigen::Vector2d(pair.a, pair.b), Covariance(1, 1, pair.correlation)),
+        pair.factor, 1e-12 * std::max(1.0, std::abs(pair.factor)))
+        << pair.a << " " << pair.b << " " << pair.correlation;
+}
+
 // P = 1/4 + arcsin ρ / 2π for two amounts with the mean 0 (Sheppard 1899). It vanishes with
 // arccos(−ρ), which keeps its digits.
 TEST(LogOrthantFactor, IsThatOfTwoCentredAmounts) {
   for (const double correlation : {-0.9999, -0.9, -0.3, 0.0, 0.5, 0.99, 0.999999})
     EXPECT_NEAR(LogOrthantFactor(Eigen::Vector2d::Zero(), Covariance(3, 0.1, correlation)),
-                std::log(2 / std::numbers::pi * std::acos(-correlation)), 1e-7)
+                std::log(2 / std::numbers::pi * std::acos(-correlation)), 1e-11)
         << correlation;
 }
 
@@ -99,7 +129,7 @@ TEST(LogOrthantFactor, SumsToTheMarginalProbability) {
           return LogOrthantFactor(Eigen::Vector2d(2 * first, sign * second),
                                   Covariance(2, 1, sign * correlation));
         };
-        EXPECT_NEAR(LogMeanExp({factor(1), factor(-1)}), LogTwiceNormal(first), 1e-8)
+        EXPECT_NEAR(LogMeanExp({factor(1), factor(-1)}), LogTwiceNormal(first), 1e-11)
             << correlation << " " << first << " " << second;
       }
 }
@@ -107,10 +137,10 @@ TEST(LogOrthantFactor, SumsToTheMarginalProbability) {
 TEST(LogOrthantFactor, IsTheSumOfIndependentAmountsInTheTails) {
   for (const double second : {-28.0, -1.0, 9.0})
     EXPECT_NEAR(LogOrthantFactor(Eigen::Vector2d(-22, second), Covariance(1, 1, 0)),
-                LogTwiceNormal(-22) + LogTwiceNormal(second), 1e-7);
+                LogTwiceNormal(-22) + LogTwiceNormal(second), 1e-11);
   const Eigen::Vector3d three(-25, 0.5, -2);
   EXPECT_NEAR(LogOrthantFactor(three, Eigen::Matrix3d::Identity()),
-              LogTwiceNormal(-25) + LogTwiceNormal(0.5) + LogTwiceNormal(-2), 1e-7);
+              LogTwiceNormal(-25) + LogTwiceNormal(0.5) + LogTwiceNormal(-2), 1e-11);
 }
 
 TEST(LogOrthantFactor, IsTheShareOfPositiveDraws) {
@@ -210,6 +240,35 @@ TEST(PositiveMode, IsFoundWhereBothArePushedBelowZero) {
       PositiveMode(Eigen::Vector2d(-0.1, -1), Covariance(1, 1, 0.99), {0, 1});
   EXPECT_NEAR(mode[0], 0.89, 1e-12);
   EXPECT_EQ(mode[1], 0);
+}
+
+// More amounts than whose subsets could be tried: the gradient H (x − m) of the mode x, with the
+// inverse H of the covariance, is 0 for positive amounts and not negative for those at 0.
+TEST(PositiveMode, IsFoundAmongManyAmounts) {
+  constexpr Eigen::Index kAmounts = 60;
+  std::mt19937_64 random(10);
+  std::normal_distribution<double> normal;
+  const auto draw = [&](Eigen::Index rows, Eigen::Index columns) -> Eigen::MatrixXd {
+    return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
+  };
+  const Eigen::MatrixXd root = draw(kAmounts, kAmounts);
+  const Eigen::MatrixXd covariance =
+      root * root.transpose() / kAmounts + 0.1 * Eigen::MatrixXd::Identity(kAmounts, kAmounts);
+  const Eigen::VectorXd mean = draw(kAmounts, 1);
+  std::vector<Eigen::Index> positive;
+  for (Eigen::Index k = 0; k < kAmounts; ++k) positive.push_back(k);
+  const Eigen::VectorXd mode = PositiveMode(mean, covariance, positive);
+  const Eigen::VectorXd gradient = covariance.llt().solve(mode - mean);
+  int of_negative_mean = 0;
+  for (const Eigen::Index k : positive) {
+    EXPECT_GE(mode[k], 0) << k;
+    if (mode[k] > 0)
+      EXPECT_NEAR(gradient[k], 0, 1e-10) << k;
+    else
+      EXPECT_GE(gradient[k], -1e-10) << k;
+    of_negative_mean += mean[k] < 0 && mode[k] > 0 ? 1 : 0;
+  }
+  EXPECT_GT(of_negative_mean, 0) << "a mode that is not found by setting negative means to 0";
 }
 
 // No allowed point near it, nor far from it, has a larger density.

@@ -192,7 +192,7 @@ TEST(Lacuna, SaysThatAnOptionOfTheProgramStandsBeforeTheCommand) {
   const Ending ending = Lacuna("fit x.yaml --threads 2");
   EXPECT_EQ(ending.status, 2);
   EXPECT_THAT(ending.said,
-              HasSubstr("\"--threads\" stands before the command: lacuna --threads 2 fit ..."));
+              HasSubstr("\"--threads\" must come before the command: lacuna --threads 2 fit ..."));
   EXPECT_THAT(Lacuna("fit x.yaml --memory-limit=4GB").said,
               HasSubstr("lacuna --memory-limit=4GB fit ..."));
 }

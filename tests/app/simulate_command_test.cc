@@ -22,6 +22,7 @@ TEST(CommandLine, WhatIsSimulatedIsAnOrdinaryRecording) {
                                (folder / "run").string() + " --recording " + scan;
   const Ending made = Lacuna(simulate);
   ASSERT_EQ(made.status, 0) << made.said;
+  EXPECT_THAT(made.said, Not(HasSubstr("warning")));
   EXPECT_TRUE(std::filesystem::exists(folder / "run/body.pvd"));
   EXPECT_EQ(Lacuna("validate " + scan).status, 0);
   const Ending info = Lacuna("info " + scan);
@@ -97,6 +98,20 @@ TEST(CommandLine, WhatIsWrittenStaysInItsFolder) {
   const Ending same = Lacuna(simulate);
   EXPECT_EQ(same.status, 2);
   EXPECT_THAT(same.said, HasSubstr("recording a/b would have the same folder, a_b, as another"));
+}
+
+// A negative ratio may be a wrong sign or meant, so that the scene is simulated all the same.
+TEST(CommandLine, ANegativePoissonRatioOfASceneCausesAWarning) {
+  const TemporaryFolder folder;
+  std::string text = FileContent(WriteSmallScene(folder));
+  const std::string positive = "poisson_ratio: 0.4";
+  text.replace(text.find(positive), positive.size(), "poisson_ratio: -0.3");
+  std::ofstream(folder / "scene.yaml") << text;
+  const Ending ending =
+      Lacuna("simulate " + (folder / "scene.yaml").string() + " -o " + (folder / "run").string());
+  EXPECT_EQ(ending.status, 0) << ending.said;
+  EXPECT_THAT(ending.said, HasSubstr("warning: corotational.poisson_ratio is -0.3: an auxetic"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "run/body.pvd"));
 }
 
 TEST(CommandLine, AnUnwritableOutputIsToldBeforeTheComputation) {

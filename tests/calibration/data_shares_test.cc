@@ -4,7 +4,6 @@
 
 #include <optional>
 
-#include "prediction/prediction_study_reader.h"
 #include "support/pulled_bar.h"
 #include "support/scanned_bar.h"
 #include "support/temporary_folder.h"
@@ -15,10 +14,8 @@ namespace {
 TEST(SharesOfData, SumToOneOverMarkersAndForces) {
   const TemporaryFolder folder;
   WritePulledBar(folder.Path(), {});
-  const PredictionStudy study = ReadPredictionStudy(Config::Parse(
-      PulledBarExperiment(folder.Path(), {{"{name: young_modulus}",
-                                           "{name: young_modulus}, {name: poisson_ratio}"}}),
-      (folder / "study.yaml").string()));
+  const PredictionStudy study = ReadPulledBarStudy(
+      folder.Path(), {{"{name: young_modulus}", "{name: young_modulus}, {name: poisson_ratio}"}});
   const CalibrationProblem problem(study, PulledBarMesh());
   const auto shares = SharesOfData(problem, problem.Start());
   ASSERT_EQ(shares.size(), 2u);

@@ -7,13 +7,13 @@
 
 #include <fstream>
 
-#include "calibration/calibration_fits.h"
+#include "calibration/calibration_problem.h"
 #include "effects/catalogue.h"
 #include "fem/prediction.h"
 #include "prediction/prediction_study_reader.h"
 #include "scan/scan_writer.h"
 #include "support/held_bar.h"
-#include "support/silent_progress.h"
+#include "support/silent_fit.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -88,12 +88,8 @@ recordings:
                     (folder / "study.yaml").string()));
 }
 
-Calibration FitOf(const CalibrationProblem& problem) {
-  SilentProgress progress;
-  return FitFromStart(problem, &progress);
-}
-
-TetMesh StudyMesh() { return BarMesh({14, 2, 2}, 2); }
+// That of the study.
+TetMesh HangingBarMesh() { return BarMesh({14, 2, 2}, 2); }
 
 class HangingBarView : public testing::Test {
  protected:
@@ -104,6 +100,7 @@ class HangingBarView : public testing::Test {
   TemporaryFolder folder_;
 };
 
+// Or a start with another modulus would not be far from it.
 TEST_F(HangingBarView, SagsByMoreThanHalfOfItsLength) {
   EXPECT_LT(Surface().vertices.row(2).minCoeff(), -0.01 - 0.55 * kLength);
 }
@@ -112,10 +109,10 @@ TEST_F(HangingBarView, DeterminesTheModulusFromFarStarts) {
   WriteView(folder_.Path(), Surface());
   for (const double start : {0.25 * kYoungModulus, 3.5 * kYoungModulus, 20 * kYoungModulus}) {
     const PredictionStudy study = StudyFrom(folder_.Path(), start);
-    const CalibrationProblem problem(study, StudyMesh());
+    const CalibrationProblem problem(study, HangingBarMesh());
     const FarStart far = FindFarStart(problem, problem.Start());
     EXPECT_THAT(far.summary, HasSubstr("times their start values")) << start;
-    const Calibration fit = FitOf(problem);
+    const Calibration fit = FitSilently(problem);
     ASSERT_TRUE(fit.usable) << fit.message;
     const ParameterEstimate& modulus = fit.estimates[0];
     EXPECT_EQ(modulus.determination, Determination::kPinnedDown);
@@ -127,11 +124,11 @@ TEST_F(HangingBarView, DeterminesTheModulusFromFarStarts) {
   }
 }
 
-// Near the solution nothing is searched.
+// One prediction shows that the start is near the solution; no other values are tried.
 TEST_F(HangingBarView, IsNotSearchedFromNearby) {
   WriteView(folder_.Path(), Surface());
   const PredictionStudy study = StudyFrom(folder_.Path(), 1.02 * kYoungModulus);
-  const CalibrationProblem problem(study, StudyMesh());
+  const CalibrationProblem problem(study, HangingBarMesh());
   const FarStart far = FindFarStart(problem, problem.Start());
   EXPECT_EQ(far.values, problem.Start());
   EXPECT_EQ(far.summary, "");
@@ -139,15 +136,16 @@ TEST_F(HangingBarView, IsNotSearchedFromNearby) {
   EXPECT_EQ(far.predictions, 1);
 }
 
-// A camera whose pose is not exactly known.
+// The pose of the camera is not exactly known: the modulus and the displacement of the scan follow
+// from the same points.
 TEST_F(HangingBarView, DeterminesModulusAndRegistration) {
   const Eigen::Vector3d shift(0.001, -0.002, 0.0015);
   WriteView(folder_.Path(), Surface(), shift);
   const PredictionStudy study =
       StudyFrom(folder_.Path(), 3.5 * kYoungModulus,
                 "    registration: {shift_deviation: 2 mm, turn_deviation: 0.2 deg}\n");
-  const CalibrationProblem problem(study, StudyMesh());
-  const Calibration fit = FitOf(problem);
+  const CalibrationProblem problem(study, HangingBarMesh());
+  const Calibration fit = FitSilently(problem);
   ASSERT_TRUE(fit.usable) << fit.message;
   ASSERT_EQ(fit.estimates.size(), 7u);
   EXPECT_LT(fit.estimates[0].low, kYoungModulus);
@@ -162,8 +160,8 @@ TEST_F(HangingBarView, DeterminesModulusAndRegistration) {
 TEST_F(HangingBarView, SaysWhyAScanCannotBeReached) {
   WriteView(folder_.Path(), HangingBar(9.80665));
   const PredictionStudy study = StudyFrom(folder_.Path(), kYoungModulus);
-  const CalibrationProblem problem(study, StudyMesh());
-  const Calibration fit = FitOf(problem);
+  const CalibrationProblem problem(study, HangingBarMesh());
+  const Calibration fit = FitSilently(problem);
   EXPECT_FALSE(fit.usable);
   EXPECT_THAT(fit.message, HasSubstr("most scanned points are farther than scan.reach"));
   EXPECT_THAT(fit.message, HasSubstr("times their start values the scanned points are at best"));
@@ -177,8 +175,8 @@ TEST_F(HangingBarView, SaysThatAScanIsTooSmall) {
   tiny.vertices.row(1).array() += 0.01;
   WriteView(folder_.Path(), tiny);
   const PredictionStudy study = StudyFrom(folder_.Path(), 30 * kYoungModulus);
-  const CalibrationProblem problem(study, StudyMesh());
-  const Calibration fit = FitOf(problem);
+  const CalibrationProblem problem(study, HangingBarMesh());
+  const Calibration fit = FitSilently(problem);
   EXPECT_FALSE(fit.usable);
   EXPECT_THAT(fit.message, HasSubstr("patches of the predicted surface: the length unit"));
 }

@@ -8,7 +8,7 @@
 #include <memory>
 #include <random>
 
-#include "calibration/calibration_fits.h"
+#include "calibration/calibration_problem.h"
 #include "calibration/calibration_run.h"
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
@@ -17,6 +17,8 @@
 #include "geometry/embedding.h"
 #include "prediction/prediction_study_reader.h"
 #include "support/held_bar.h"
+#include "support/replace_in_file.h"
+#include "support/silent_fit.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
@@ -73,23 +75,15 @@ PredictionStudy HangingStudy(const std::filesystem::path& folder, const std::str
 
 // Gives the clamp of the recording in `folder` an uncertain placement.
 void LoosenClamp(const std::filesystem::path& folder) {
-  std::string text = FileContent(folder / "recording.yaml");
   const std::string normal = "normal: [-1, 0, 0]}";
-  const size_t at = text.find(normal);
-  ASSERT_NE(at, std::string::npos);
-  text.insert(at + normal.size(), ", placement: {shift_deviation: 1 mm, turn_deviation: 2 deg}");
-  std::ofstream(folder / "recording.yaml") << text;
+  ReplaceInFile(folder / "recording.yaml", normal,
+                normal + ", placement: {shift_deviation: 1 mm, turn_deviation: 2 deg}");
 }
 
 std::vector<std::string> NamesOf(const CalibrationProblem& problem) {
   std::vector<std::string> names;
   for (const CalibratedParameter& parameter : problem.parameters()) names.push_back(parameter.name);
   return names;
-}
-
-Calibration FitOf(const CalibrationProblem& problem) {
-  SilentProgress progress;
-  return FitFromStart(problem, &progress);
 }
 
 // The equilibrium under its own weight depends on E/ρ alone. With the standard deviations s of ln ρ
@@ -113,7 +107,7 @@ TEST(HangingBar, LeavesTheModulusAsUncertainAsTheDensity) {
   // Sensitivities are solved to 1e-4.
   EXPECT_LT((by_modulus + by_density).norm(), 1e-3 * by_modulus.norm());
 
-  const Calibration known = FitOf(exact_problem), fit = FitOf(problem);
+  const Calibration known = FitSilently(exact_problem), fit = FitSilently(problem);
   ASSERT_TRUE(known.usable && fit.usable) << known.message << fit.message;
   const double data = known.estimates[0].posterior_deviation;
   EXPECT_LT(data, 0.5 * kDensityDeviation) << "or the density would hardly matter";
@@ -141,12 +135,11 @@ TEST(HangingBar, IsReadBackWithTheDensityThatWasFitted) {
   ASSERT_TRUE(exact.usable) << exact.message;
   const double modulus = exact.parameters.at(0).estimate.value;  // with 1000 kg/m³
   // The moduli of a denser bar are larger; a modulus known beforehand decides the density instead.
-  std::string text = HangingExperiment(folder.Path(), "density_deviation: 0.2\n");
-  const std::string name = "{name: young_modulus}";
-  text.replace(text.find(name), name.size(),
-               fmt::format("{{name: young_modulus, mean: {} Pa, deviation: {} Pa}}", 1.1 * modulus,
-                           0.003 * modulus));
-  const CalibrationRecord record = run(text);
+  const CalibrationRecord record =
+      run(WithReplacements(HangingExperiment(folder.Path(), "density_deviation: 0.2\n"),
+                           {{"{name: young_modulus}",
+                             fmt::format("{{name: young_modulus, mean: {} Pa, deviation: {} Pa}}",
+                                         1.1 * modulus, 0.003 * modulus)}}));
   ASSERT_TRUE(record.usable) << record.message;
   ASSERT_EQ(record.parameters.at(1).name, "density");
   // E/ρ is that of the exact density. The prior of the density moves it by (1/20)² of 10 %.
@@ -161,7 +154,8 @@ TEST(HangingBar, IsReadBackWithTheDensityThatWasFitted) {
             record.parameters[1].estimate.value);
 }
 
-// Mass-proportional damping stays that of the given density.
+// The fitted density is an effect beside a body of the given density, to which mass-proportional
+// damping refers. A run that is read back therefore predicts what was fitted.
 TEST(HangingBar, MovesAsItWasFittedWhenItIsReadBack) {
   const TemporaryFolder folder;
   WriteBarRecording(folder.Path(), FilmHeldBar({}));

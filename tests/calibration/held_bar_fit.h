@@ -6,19 +6,12 @@
 #include <map>
 #include <string>
 
-#include "calibration/calibration_fits.h"
 #include "support/held_bar.h"
-#include "support/silent_progress.h"
 
 namespace lacuna {
 
 // Coarser than the mesh that was filmed.
 inline TetMesh StudyMesh() { return BarMesh({7, 2, 2}, 2); }
-
-inline Calibration FitOf(const CalibrationProblem& problem) {
-  SilentProgress progress;
-  return FitFromStart(problem, &progress);
-}
 
 // For ReadBarStudy(): adds the recording in <folder>/other, of a bar that was held at the same end,
 // before the one in <folder>. `settings`: lines of the entry, such as "    fitted: false\n".

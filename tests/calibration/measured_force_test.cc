@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "calibration/calibration_fits.h"
+#include "calibration/calibration_problem.h"
 #include "calibration/calibration_run.h"
 #include "calibration/data_shares.h"
 #include "calibration/held_out_misfit.h"
@@ -15,42 +15,56 @@
 #include "prediction/prediction_study_reader.h"
 #include "record/csv_table.h"
 #include "support/pulled_bar.h"
+#include "support/silent_fit.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
 
-using Replacements = std::map<std::string, std::string>;
+// A pulled bar that was recorded in a folder of its own, and the fit of its modulus.
+struct FittedBar {
+  explicit FittedBar(const PulledBarTruth& truth, const std::string& measured_force = kLoadCell,
+                     const std::string& measured_torque = "")
+      : study(Record(folder.Path(), truth, measured_force, measured_torque)),
+        problem(study, PulledBarMesh()),
+        fit(FitSilently(problem)) {}
 
-PredictionStudy StudyOf(const TemporaryFolder& folder, const Replacements& replaced = {}) {
-  return ReadPredictionStudy(Config::Parse(PulledBarExperiment(folder.Path(), replaced),
-                                           (folder / "study.yaml").string()));
-}
+  std::vector<RecordingMisfit> Misfits() const { return MisfitsOf(problem, fit.parameters); }
 
-Calibration FitOf(const CalibrationProblem& problem) {
-  SilentProgress progress;
-  return FitFromStart(problem, &progress);
+  TemporaryFolder folder;
+  PredictionStudy study;
+  CalibrationProblem problem;
+  Calibration fit;
+
+ private:
+  static PredictionStudy Record(const std::filesystem::path& folder, const PulledBarTruth& truth,
+                                const std::string& measured_force,
+                                const std::string& measured_torque) {
+    WritePulledBar(folder, truth, measured_force, measured_torque);
+    return ReadPulledBarStudy(folder);
+  }
+};
+
+// The truth lies in the interval of the estimate, which is narrower than `width`.
+void ExpectFound(const ParameterEstimate& estimate, double truth, double width) {
+  EXPECT_EQ(estimate.determination, Determination::kPinnedDown);
+  EXPECT_LT(estimate.low, truth);
+  EXPECT_GT(estimate.high, truth);
+  EXPECT_LT(estimate.high - estimate.low, width);
 }
 
 TEST(MeasuredForce, DeterminesTheModulusOfABarThatIsStretched) {
-  const TemporaryFolder folder;
   const PulledBarTruth truth;
-  WritePulledBar(folder.Path(), truth);
-  const PredictionStudy study = StudyOf(folder);
-  const CalibrationProblem problem(study, PulledBarMesh());
-  const Calibration fit = FitOf(problem);
+  const FittedBar bar(truth);
+  const Calibration& fit = bar.fit;
   ASSERT_TRUE(fit.usable) << fit.message;
-  const ParameterEstimate& modulus = fit.estimates.at(0);
-  EXPECT_EQ(modulus.determination, Determination::kPinnedDown);
-  EXPECT_LT(modulus.low, truth.young_modulus);
-  EXPECT_GT(modulus.high, truth.young_modulus);
   // 12 readings with σ = 10 mN and an unknown tare: the slope over 0 to 5.5 mm, of about 3 N, is
   // known to σ √(12/12) / 3 N = 0.3 %.
-  EXPECT_LT(modulus.high - modulus.low, 0.03 * truth.young_modulus);
+  ExpectFound(fit.estimates.at(0), truth.young_modulus, 0.03 * truth.young_modulus);
   EXPECT_LT(fit.rms, 1.2);
 
-  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, fit.parameters);
+  const std::vector<RecordingMisfit> misfits = bar.Misfits();
   const FittedReaction& jaw = misfits.at(0).reactions.at(0);
   EXPECT_EQ(jaw.name, "jaw");
   EXPECT_EQ(jaw.in_fit.frames, 12);
@@ -61,99 +75,89 @@ TEST(MeasuredForce, DeterminesTheModulusOfABarThatIsStretched) {
   EXPECT_LT(jaw.held_out.rms_over_sigma, 3);  // the errors of modulus and tare included
   EXPECT_GT(jaw.held_out.rms, 0);
   // The motion of the markers hardly depends on the modulus.
-  EXPECT_GT(SharesOfData(problem, fit.parameters).at(0).value().forces, 0.999);
+  EXPECT_GT(SharesOfData(bar.problem, fit.parameters).at(0).value().forces, 0.999);
 
   // A prediction that is known is not made again.
-  const LinearisedMisfit known = problem.Linearise(fit.parameters);
-  const FittedReaction same = MisfitsOf(problem, fit.parameters, &known).at(0).reactions.at(0);
+  const LinearisedMisfit known = bar.problem.Linearise(fit.parameters);
+  const FittedReaction same = MisfitsOf(bar.problem, fit.parameters, &known).at(0).reactions.at(0);
   EXPECT_NEAR(same.in_fit.rms, jaw.in_fit.rms, 1e-6 * jaw.in_fit.rms);
   EXPECT_NEAR(same.held_out.rms, jaw.held_out.rms, 1e-6 * jaw.held_out.rms);
 }
 
+// A motion that is given at both ends, without gravity, is the same for every modulus.
 TEST(MeasuredForce, WithoutItTheModulusScalesOut) {
-  const TemporaryFolder folder;
-  WritePulledBar(folder.Path(), {}, "");
-  const PredictionStudy study = StudyOf(folder);
-  const CalibrationProblem problem(study, PulledBarMesh());
-  const Calibration fit = FitOf(problem);
-  ASSERT_EQ(fit.estimates.size(), 1u);
-  const auto determination = fit.estimates[0].determination;
+  const FittedBar bar({}, "");
+  ASSERT_EQ(bar.fit.estimates.size(), 1u);
+  const Determination determination = bar.fit.estimates[0].determination;
   EXPECT_TRUE(determination == Determination::kFlat || determination == Determination::kDead)
       << static_cast<int>(determination);
-  EXPECT_TRUE(SharesOfData(problem, fit.parameters).empty());
+  EXPECT_TRUE(SharesOfData(bar.problem, bar.fit.parameters).empty());
 }
 
 // The torque of a jaw that twists and pulls determines the modulus as its force does.
 TEST(MeasuredTorque, DeterminesTheModulusOfABarThatIsTwisted) {
-  const TemporaryFolder folder;
   PulledBarTruth truth;
   truth.twist = 0.02;
-  WritePulledBar(folder.Path(), truth, "",
-                 "{file: force.csv, time: t, along: [1, 0, 0], value: mx, about: [0 m, 0 m, 0 m], "
-                 "deviation: 0.01 N mm}");
-  const PredictionStudy study = StudyOf(folder);
-  const CalibrationProblem problem(study, PulledBarMesh());
-  const Calibration fit = FitOf(problem);
-  ASSERT_TRUE(fit.usable) << fit.message;
-  const ParameterEstimate& modulus = fit.estimates.at(0);
-  EXPECT_EQ(modulus.determination, Determination::kPinnedDown);
-  EXPECT_LT(modulus.low, truth.young_modulus);
-  EXPECT_GT(modulus.high, truth.young_modulus);
-  EXPECT_LT(modulus.high - modulus.low, 0.05 * truth.young_modulus);
-  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, fit.parameters);
+  const FittedBar bar(
+      truth, "",
+      "{file: force.csv, time: t, along: [1, 0, 0], value: mx, about: [0 m, 0 m, 0 m], deviation: "
+      "0.01 N mm}");
+  ASSERT_TRUE(bar.fit.usable) << bar.fit.message;
+  ExpectFound(bar.fit.estimates.at(0), truth.young_modulus, 0.05 * truth.young_modulus);
+  const std::vector<RecordingMisfit> misfits = bar.Misfits();
   const FittedReaction& jaw = misfits.at(0).reactions.at(0);
   EXPECT_TRUE(jaw.is_torque);
   EXPECT_LT(jaw.in_fit.rms_over_sigma, 1.5);
-  EXPECT_GT(SharesOfData(problem, fit.parameters).at(0).value().forces, 0.99);
-  EXPECT_TRUE(ReactionTable(problem, misfits, /*torques=*/false).empty());
-  const CsvTable curve = ReactionTable(problem, misfits, /*torques=*/true);
+  EXPECT_GT(SharesOfData(bar.problem, bar.fit.parameters).at(0).value().forces, 0.99);
+  // The curve is in the table of torques, over the rotation of the jaw.
+  EXPECT_TRUE(ReactionTable(bar.problem, misfits, /*torques=*/false).empty());
+  const CsvTable curve = ReactionTable(bar.problem, misfits, /*torques=*/true);
   EXPECT_EQ(curve.at(6).name, "rotation_rad");
   EXPECT_NEAR(curve[6].values[10], 10 * truth.twist, 1e-12);
 }
 
 // A load cell that is late and of which the sign is not known.
 TEST(MeasuredForce, MayBeLateAndOfUnknownSign) {
-  const TemporaryFolder folder;
   PulledBarTruth truth;
   truth.tare = 0;
   truth.delay = 0.7;
   truth.sign = -1;
-  WritePulledBar(folder.Path(), truth,
-                 "{file: force.csv, time: t, x: fx, deviation: 10 mN, exerted_by: unknown, "
-                 "delay_deviation: 1 s}");
-  const PredictionStudy study = StudyOf(folder);
-  const CalibrationProblem problem(study, PulledBarMesh());
-  const Calibration fit = FitOf(problem);
+  const FittedBar bar(truth,
+                      "{file: force.csv, time: t, x: fx, deviation: 10 mN, exerted_by: unknown, "
+                      "delay_deviation: 1 s}");
+  const Calibration& fit = bar.fit;
   ASSERT_TRUE(fit.usable) << fit.message;
   ASSERT_EQ(fit.estimates.size(), 2u);
   EXPECT_LT(fit.estimates[0].low, truth.young_modulus);
   EXPECT_GT(fit.estimates[0].high, truth.young_modulus);
-  const ParameterEstimate& delay = fit.estimates[1];
-  const std::string& name = problem.parameters().at(1).name;
+  const std::string& name = bar.problem.parameters().at(1).name;
   EXPECT_NE(name.find("jaw.force_delay"), std::string::npos) << name;
+  // The force grows by 0.23 N/s, so that 11 readings of 10 mN give the delay to about 30 ms.
+  const ParameterEstimate& delay = fit.estimates[1];
   EXPECT_LT(delay.low, truth.delay);
   EXPECT_GT(delay.high, truth.delay);
-  // The force grows by 0.23 N/s, so that 11 readings of 10 mN give the delay to about 30 ms.
   EXPECT_LT(delay.high - delay.low, 0.3);
   EXPECT_LT(fit.rms, 1.2);
-  const FittedReaction jaw = MisfitsOf(problem, fit.parameters).at(0).reactions.at(0);
+  const FittedReaction jaw = bar.Misfits().at(0).reactions.at(0);
   EXPECT_TRUE(jaw.is_opposite);
   EXPECT_LT(jaw.held_out.rms_over_sigma, 3);
-  const LinearisedMisfit known = problem.Linearise(fit.parameters);
-  EXPECT_TRUE(MisfitsOf(problem, fit.parameters, &known).at(0).reactions.at(0).is_opposite);
+  const LinearisedMisfit known = bar.problem.Linearise(fit.parameters);
+  EXPECT_TRUE(MisfitsOf(bar.problem, fit.parameters, &known).at(0).reactions.at(0).is_opposite);
 }
 
+// The rows of a force and of a torque beside those of the markers: their layout and errors, and
+// their derivatives by all parameters, which agree with central differences of the rows.
 TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
   const TemporaryFolder folder;
   PulledBarTruth truth;
   truth.twist = 0.02;
   WritePulledBar(folder.Path(), truth, kLoadCell,
                  "{file: force.csv, time: t, x: mx, deviation: 0.01 N mm, delay_deviation: 0.1 s}");
-  const PredictionStudy study =
-      StudyOf(folder, {{"{name: young_modulus}", "{name: young_modulus}, {name: poisson_ratio}"},
-                       {"    fit_until: 11.5 s\n",
-                        "    clock_deviation: 0.1 s\n    registration: {shift_deviation: 1 mm, "
-                        "turn_deviation: 1 deg}\n"}});
+  const PredictionStudy study = ReadPulledBarStudy(
+      folder.Path(), {{"{name: young_modulus}", "{name: young_modulus}, {name: poisson_ratio}"},
+                      {"    fit_until: 11.5 s\n",
+                       "    clock_deviation: 0.1 s\n    registration: {shift_deviation: 1 mm, "
+                       "turn_deviation: 1 deg}\n"}});
   const CalibrationProblem problem(study, PulledBarMesh());
   Eigen::VectorXd at = problem.Start();
   ASSERT_EQ(at.size(), 10);
@@ -253,7 +257,7 @@ TEST(MeasuredForce, NeedsAReadingWithinTheFramesAndItsNoise) {
     WritePulledBar(folder.Path(), {}, "{file: force.csv, time: t, x: fx}");
     std::ofstream(folder / "force.csv") << content;
     try {
-      StudyOf(folder);
+      ReadPulledBarStudy(folder.Path());
     } catch (const InputError& error) {
       return error.what();
     }

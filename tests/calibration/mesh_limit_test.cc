@@ -3,9 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "calibration/calibration_fits.h"
 #include "calibration/known_errors.h"
@@ -37,6 +42,11 @@ struct BarFit {
   }
 };
 
+KnownErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
+  SilentProgress progress;
+  return FindKnownErrors(problem, values, &progress);
+}
+
 // A bar of few elements, fitted to a film of a finer one. What several tests use is computed once.
 class MeshLimitOfACoarseBar : public testing::Test {
  protected:
@@ -60,7 +70,7 @@ class MeshLimitOfACoarseBar : public testing::Test {
   static const Eigen::VectorXd& Values() { return coarse_->calibration.parameters; }
   static const LinearisedMisfit& MisfitThere() { return *misfit_; }
   static const KnownErrors& Errors() {
-    static const KnownErrors errors = FindKnownErrors(Problem(), Values());
+    static const KnownErrors errors = ErrorsOf(Problem(), Values());
     return errors;
   }
   static const std::optional<OtherMesh>& Finer() {
@@ -108,7 +118,7 @@ TEST_F(MeshLimitOfACoarseBar, IsWhatAFinerMeshIsFittedWith) {
 // What was found is kept, and where it was kept the finer mesh is not simulated there again.
 TEST_F(MeshLimitOfACoarseBar, IsFoundFromWhatWasKept) {
   ASSERT_TRUE(Finer().has_value());
-  SaveOtherMesh(*Finer(), Folder());
+  WriteOtherMesh(*Finer(), Folder());
   auto kept = ReadOtherMesh(Folder());
   ASSERT_TRUE(kept.has_value());
   EXPECT_EQ(kept->other, Finer()->other);
@@ -154,7 +164,7 @@ TEST_F(MeshLimitOfACoarseBar, LeavesTheUncertaintyOfTheDimensions) {
   PredictionStudy measured = Problem().WithEstimatedNoise();
   measured.size_deviation = 0;
   const KnownErrors without =
-      FindKnownErrors(CalibrationProblem(measured, Problem().body()->mesh), Values());
+      ErrorsOf(CalibrationProblem(measured, Problem().body()->mesh), Values());
   const Eigen::MatrixXd by_sizes = ParameterResponse(Problem(), Values(), MisfitThere(), true)
                                        .To(ChangesBySize(Problem(), Values(), MisfitThere()));
   ASSERT_EQ(by_sizes.cols(), 3);
@@ -219,11 +229,39 @@ TEST(KnownErrors, SayThatTheyCouldNotBeComputed) {
   ASSERT_EQ(problem.parameters()[1].name, "attached_mass.mass");
   Eigen::VectorXd values = problem.Start();
   values[1] = -1;  // kg
-  const KnownErrors errors = FindKnownErrors(problem, values);
+  const KnownErrors errors = ErrorsOf(problem, values);
   EXPECT_EQ(errors.at_limit, values);
   EXPECT_EQ(errors.at_mesh_limit.size(), 0);
   ASSERT_EQ(errors.notes.size(), 1u);
   EXPECT_THAT(errors.notes[0], testing::HasSubstr("attached_mass with a mass of -1 kg removes"));
+}
+
+// Of a sheet, which has no other mesh, with exact dimensions: the fitted motion and those with half
+// and a quarter of the step are predicted.
+TEST(KnownErrors, CountThePredictedFrames) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  PredictionStudy study =
+      ReadBarStudy(folder.Path(), {{"noise: 0.05 mm\n", "noise: 0.05 mm\nsize_deviation: 0\n"}});
+  study.recordings.front().recording.reference.sheet_thickness = 1e-3;  // m
+  const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 1));
+  std::ostringstream stream;
+  ProgressOptions options;
+  options.style = ProgressStyle::kJsonLines;
+  options.json_interval = 0;
+  options.stream = &stream;
+  Progress progress(options);
+  progress.Begin("errors", 0);
+  FindKnownErrors(problem, problem.Start(), &progress);
+  std::vector<int> counts;
+  std::istringstream text(stream.str());
+  for (std::string line; std::getline(text, line);)
+    if (const auto report = nlohmann::json::parse(line); report.at("event") == "progress")
+      counts.push_back(report.at("done"));
+  std::sort(counts.begin(), counts.end());  // two predictions run side by side
+  std::vector<int> expected(3 * kFrames);
+  std::iota(expected.begin(), expected.end(), 1);
+  EXPECT_EQ(counts, expected);
 }
 
 // Richardson's extrapolation from a coarser mesh, which a study of many elements uses.

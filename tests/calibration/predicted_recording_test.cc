@@ -14,6 +14,7 @@
 #include "calibration/held_out_misfit.h"
 #include "record/csv_table.h"
 #include "support/replace_in_file.h"
+#include "support/silent_fit.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -40,7 +41,7 @@ TEST(CalibrationProblem, DoesNotUseWhatIsHeldOut) {
     changes["noise: 0.05 mm\n"] = "";
     const PredictionStudy study = ReadBarStudy(folder / name, changes);
     const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 2));
-    const Calibration calibration = FitOf(problem);
+    const Calibration calibration = FitSilently(problem);
     EXPECT_TRUE(calibration.usable) << calibration.message;
     return calibration;
   };
@@ -63,7 +64,7 @@ void ReverseMarkers(const std::filesystem::path& folder) {
   CsvTable reversed{table[0]};
   for (size_t m = table.size() / 3; m > 0; --m)
     reversed.insert(reversed.end(), {table[3 * m - 2], table[3 * m - 1], table[3 * m]});
-  SaveCsv(reversed, folder / "markers.csv");
+  WriteCsv(reversed, folder / "markers.csv");
 }
 
 // Where a marker is on the object, a fitted recording tells for one that is not fitted.
@@ -80,7 +81,7 @@ TEST(CalibrationProblem, KnowsMisplacedMarkersFromFittedRecordings) {
     changes["place_deviation: 0.2 mm"] = "place_deviation: 1 mm";
     const PredictionStudy study = ReadBarStudy(folder.Path(), changes);
     const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 2));
-    const Calibration calibration = FitOf(problem);
+    const Calibration calibration = FitSilently(problem);
     EXPECT_TRUE(calibration.usable) << calibration.message;
     return MisfitsOf(problem, calibration.parameters);
   };
@@ -119,7 +120,7 @@ TEST(CalibrationProblem, KnowsTheRegistrationOfARecording) {
         folder.Path(),
         WithOtherRecording("    fitted: false\n    clock_deviation: 10 ms\n" + registration));
     const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 2));
-    const Calibration calibration = FitOf(problem);
+    const Calibration calibration = FitSilently(problem);
     EXPECT_TRUE(calibration.usable) << calibration.message;
     return MisfitsOf(problem, calibration.parameters);
   };

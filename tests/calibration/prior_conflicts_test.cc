@@ -36,7 +36,15 @@ class MarkerConflictsOfABar : public testing::Test {
     misfit_.place_offset = Eigen::Matrix3Xd::Zero(3, kMarkers);
   }
   std::vector<PriorConflict> Conflicts() const {
-    return FindPriorConflicts(CalibrationProblem(study_, BarMesh({2, 1, 1}, 1)), {misfit_});
+    const CalibrationProblem problem(study_, BarMesh({2, 1, 1}, 1));
+    return FindPriorConflicts(problem, problem.Start(), {misfit_});
+  }
+  // Conflicts where the fit estimates these values, SI, of Young's modulus and the mass damping.
+  std::vector<PriorConflict> ConflictsAt(double young_modulus, double alpha) const {
+    const CalibrationProblem problem(study_, BarMesh({2, 1, 1}, 1));
+    Eigen::VectorXd values = problem.Start();
+    values.head<2>() << young_modulus, alpha;
+    return FindPriorConflicts(problem, values, {misfit_});
   }
 
   TemporaryFolder folder_;
@@ -67,6 +75,34 @@ TEST_F(MarkerConflictsOfABar, BeginBeyondThreeDeviationsOfANumberAndFurtherOutFo
   EXPECT_EQ(Conflicts().size(), 1u);
 }
 
+// The plausible range of the mass damping is 0 to 20 1/s, so that its prior is 1 ± 10 1/s.
+TEST_F(MarkerConflictsOfABar, IncludeAParameterFarFromItsDefaultPrior) {
+  EXPECT_TRUE(ConflictsAt(0.15e6, 30.9).empty());
+  const std::vector<PriorConflict> conflicts = ConflictsAt(0.15e6, 33);
+  ASSERT_EQ(conflicts.size(), 1u);
+  const auto& damping = std::get<ModelParameterConflict>(conflicts[0]);
+  EXPECT_EQ(damping.parameter, "mass_damping.alpha");
+  EXPECT_EQ(damping.unit, "1/s");
+  EXPECT_NEAR(damping.deviations, 3.2, 1e-12);
+  EXPECT_EQ(damping.mean, 1);
+  EXPECT_TRUE(damping.is_default);
+}
+
+// The modulus is fitted on a logarithmic scale, on which the prior is ln(0.1 MPa) ± 0.2.
+TEST_F(MarkerConflictsOfABar, MeasureAParameterOnTheScaleOnWhichItIsFitted) {
+  study_ = ReadBarStudy(
+      folder_.Path(),
+      {{"{name: young_modulus}", "{name: young_modulus, mean: 0.1 MPa, deviation: 20 kPa}"}});
+  EXPECT_TRUE(ConflictsAt(1e5 * std::exp(-0.58), 1).empty());
+  const std::vector<PriorConflict> conflicts = ConflictsAt(1e5 * std::exp(-0.7), 1);
+  ASSERT_EQ(conflicts.size(), 1u);
+  const auto& modulus = std::get<ModelParameterConflict>(conflicts[0]);
+  EXPECT_EQ(modulus.parameter, "young_modulus");
+  EXPECT_NEAR(modulus.deviations, 3.5, 1e-9);
+  EXPECT_DOUBLE_EQ(modulus.mean, 1e5);
+  EXPECT_FALSE(modulus.is_default);
+}
+
 TEST_F(MarkerConflictsOfABar, ListTheSixWorstMarkersAndCountTheOthers) {
   for (int m = 1; m < kMarkers; ++m) misfit_.place_offset(0, m) = (4 + m) * kPlaceDeviation;
   const std::vector<PriorConflict> conflicts = Conflicts();
@@ -88,7 +124,7 @@ TEST_F(MarkerConflictsOfABar, AreRareWhereThePriorHolds) {
   for (int trial = 0; trial < 300; ++trial) {
     misfit_.place_offset =
         Eigen::Matrix3Xd::NullaryExpr(3, kMarkers, [&] { return normal(random); });
-    reported += !FindPriorConflicts(problem, {misfit_}).empty();
+    reported += !FindPriorConflicts(problem, problem.Start(), {misfit_}).empty();
   }
   EXPECT_LT(reported, 6);  // 0.8 ± 0.9
 }
@@ -155,14 +191,15 @@ recordings: [{recording: recording.yaml}]
   misfit.misfit.frames = {0, 1};
   misfit.misfit.observed.resize(2);
   for (Observed& observed : misfit.misfit.observed) observed.offered = observed.used = 100;
-  EXPECT_TRUE(FindPriorConflicts(problem, {misfit}).empty());
+  EXPECT_TRUE(FindPriorConflicts(problem, problem.Start(), {misfit}).empty());
 
   misfit.place_offset(0, 7) = -1.1e-3;  // 3.7 deviations
-  EXPECT_TRUE(FindPriorConflicts(problem, {misfit}).empty());
+  EXPECT_TRUE(FindPriorConflicts(problem, problem.Start(), {misfit}).empty());
 
   misfit.place_offset(0, 7) = -1.2e-3;
   misfit.misfit.observed[1].used = 80;
-  const std::vector<PriorConflict> conflicts = FindPriorConflicts(problem, {misfit});
+  const std::vector<PriorConflict> conflicts =
+      FindPriorConflicts(problem, problem.Start(), {misfit});
   ASSERT_EQ(conflicts.size(), 2u);
   const auto& patches = std::get<PatchConflict>(conflicts[0]);
   EXPECT_EQ(patches.conflicting, 1);

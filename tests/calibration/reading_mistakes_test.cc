@@ -17,7 +17,8 @@ double TrueForce(double time) { return time < 0.5 ? 0 : std::pow(time - 0.5, 1.5
 
 // What is found where the load cell reads this function of time and a model predicts `modulus`
 // times the true force.
-ReadingMistakes MistakesIn(const std::function<double(double)>& read, double modulus) {
+ReadingMistakes MistakesIn(const std::function<double(double)>& read, double modulus,
+                           bool forces_are_known = false) {
   MeasuredReaction reading;
   reading.labels = {"x"};
   reading.directions = Eigen::Vector3d::UnitX();
@@ -34,7 +35,7 @@ ReadingMistakes MistakesIn(const std::function<double(double)>& read, double mod
     times.push_back(kFrameTime * f);
     misfit.residual[f] = modulus * TrueForce(times.back()) - read(times.back());
   }
-  return FindReadingMistakes(reading, misfit, times);
+  return FindReadingMistakes(reading, misfit, times, forces_are_known);
 }
 
 TEST(ReadingMistakes, AreTheSignOrAFactor) {
@@ -52,6 +53,31 @@ TEST(ReadingMistakes, AreAnOffset) {
   EXPECT_FALSE(found.factor);
   ASSERT_TRUE(found.offset);
   EXPECT_NEAR(*found.offset, 0.5, 1e-9);
+}
+
+// The weights on the object are known, so that no modulus stands for the factor. In another unit,
+// they differ from what the cell reads, beside the weight that it has not been told.
+TEST(ReadingMistakes, AreNotAnOffsetAloneWhereKnownForcesAreInAnotherUnit) {
+  const auto read = [](double t) { return 9.8 * TrueForce(t) - 2.5; };
+  const ReadingMistakes known = MistakesIn(read, 1, /*forces_are_known=*/true);
+  ASSERT_TRUE(known.factor && known.offset);
+  EXPECT_NEAR(*known.factor, 9.8, 1e-9);
+  EXPECT_NEAR(*known.offset, -2.5, 1e-9);
+  EXPECT_FALSE(known.delay);
+  const ReadingMistakes free = MistakesIn(read, 1);
+  EXPECT_TRUE(free.offset && !free.factor) << "a modulus that is 9.8 times too small";
+  const ReadingMistakes near_one = MistakesIn([](double t) { return 0.5 + TrueForce(t); }, 1.02,
+                                              /*forces_are_known=*/true);
+  ASSERT_TRUE(near_one.offset);
+  EXPECT_NEAR(*near_one.offset, 0.5, 1e-9);
+  EXPECT_FALSE(near_one.factor);
+}
+
+TEST(ReadingMistakes, AreADelayOfAboutTheKnownForces) {
+  const auto late = [](double t) { return TrueForce(t - 0.2); };
+  EXPECT_TRUE(MistakesIn(late, 1, /*forces_are_known=*/true).delay);
+  EXPECT_FALSE(MistakesIn(late, 0.75, /*forces_are_known=*/true).delay);
+  EXPECT_TRUE(MistakesIn(late, 0.75).delay);
 }
 
 TEST(ReadingMistakes, AreADelay) {

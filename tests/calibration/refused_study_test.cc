@@ -60,9 +60,11 @@ TEST(CalibrationProblem, TellsWhatItCannotWorkWith) {
       message_with_clamp(clamp +
                          ", {name: end, box: {min: [-1 m, -1 m, -1 m], max: [0.001 m, 1 m, 1 m]}}"),
       testing::HasSubstr("regions \"clamp\" and \"end\" hold the same part"));
-  EXPECT_THAT(message_with_clamp("{name: all, half_space: {point: [1 m, 0 m, 0 m], "
-                                 "normal: [-1, 0, 0]}}"),
-              testing::HasSubstr("region \"all\" holds the whole object"));
+  // Two regions: one that holds all markers is refused when the study is read.
+  EXPECT_THAT(message_with_clamp(
+                  "{name: left, half_space: {point: [0.041 m, 0 m, 0 m], normal: [-1, 0, 0]}}, "
+                  "{name: right, half_space: {point: [0.042 m, 0 m, 0 m], normal: [1, 0, 0]}}"),
+              testing::HasSubstr("\"right\" and those before it hold all"));
   WriteBarRecording(folder.Path(), std::vector<Eigen::Matrix3Xd>(kFrames, moved));
   std::string text = FileContent(folder / "recording.yaml");
   const size_t place = text.find("[", text.find("name: m2")) + 1;

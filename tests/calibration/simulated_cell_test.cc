@@ -5,15 +5,14 @@
 #include <fstream>
 #include <numbers>
 
-#include "calibration/calibration_fits.h"
+#include "calibration/calibration_problem.h"
 #include "calibration/held_out_misfit.h"
 #include "calibration/reaction_report.h"
 #include "geometry/mesh_io.h"
 #include "prediction/played_recording.h"
 #include "prediction/predicted_body.h"
-#include "prediction/prediction_study_reader.h"
 #include "support/pulled_bar.h"
-#include "support/silent_progress.h"
+#include "support/silent_fit.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -34,19 +33,13 @@ void WriteSwayingJaw(const std::filesystem::path& file) {
   }
 }
 
-PredictionStudy StudyOf(const std::filesystem::path& recording,
-                        const std::map<std::string, std::string>& replaced) {
-  return ReadPredictionStudy(
-      Config::Parse(PulledBarExperiment(recording, replaced), (recording / "study.yaml").string()));
-}
-
 TEST(SimulatedCell, ItsTareAndDelayAreRecoveredByAFit) {
   const TemporaryFolder folder;
   WritePulledBar(folder.Path(), {},
                  "{file: force.csv, time: t, x: fx, unit: N, deviation: 10 mN, tare_deviation: "
                  "0.3 N, delay_deviation: 1 s}");
   WriteSwayingJaw(folder / "jaw.csv");
-  const PredictionStudy truth = StudyOf(
+  const PredictionStudy truth = ReadPulledBarStudy(
       folder.Path(),
       {{"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"},
        {"    fit_until: 11.5 s\n",
@@ -63,11 +56,10 @@ TEST(SimulatedCell, ItsTareAndDelayAreRecoveredByAFit) {
   recording.reference = folder / "played/object.msh";
   WriteMarkerRecording(folder / "played", recording);
 
-  const PredictionStudy study = StudyOf(folder / "played", {});
+  const PredictionStudy study = ReadPulledBarStudy(folder / "played");
   EXPECT_TRUE(study.recordings.front().simulated_cells.empty());
   const CalibrationProblem problem(study, mesh);
-  SilentProgress progress;
-  const Calibration fit = FitFromStart(problem, &progress);
+  const Calibration fit = FitSilently(problem);
   ASSERT_TRUE(fit.usable) << fit.message;
   ASSERT_EQ(fit.estimates.size(), 2u);
   EXPECT_NE(problem.parameters()[1].name.find("jaw.force_delay"), std::string::npos);

@@ -10,6 +10,7 @@
 #include "calibration/known_errors.h"
 #include "support/held_bar.h"
 #include "support/replace_in_file.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 #include "support/test_effect.h"
 
@@ -101,7 +102,8 @@ TEST_F(SizeErrorsOfABar, AreSaidToBeMissingWhereTheyCannotBeComputed) {
   PredictionStudy study = ReadBarStudy(folder_.Path());
   const auto notes = [&] {
     const CalibrationProblem problem(study, CoarseBar());
-    return FindKnownErrors(problem, problem.Start()).notes;
+    SilentProgress progress;
+    return FindKnownErrors(problem, problem.Start(), &progress).notes;
   };
   using testing::Contains, testing::HasSubstr, testing::Not;
   const char* const of_sizes = "do not contain the uncertainty of the object's dimensions";

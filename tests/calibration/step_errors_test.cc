@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 
-#include "prediction/prediction_study_reader.h"
 #include "support/pulled_bar.h"
 #include "support/temporary_folder.h"
 
@@ -16,12 +15,11 @@ namespace {
 // Of a bar that relaxes while it is pulled slowly, with this time_step.
 std::optional<StepErrors> ErrorsWithStep(const std::filesystem::path& folder,
                                          const std::string& time_step) {
-  const PredictionStudy study = ReadPredictionStudy(Config::Parse(
-      PulledBarExperiment(folder, {{"time_step: 1 s", "time_step: " + time_step},
-                                   {"motion:",
-                                    "effects: [{type: viscoelastic_branch, modulus: 30 kPa, "
-                                    "relaxation_time: 3 s}]\nmotion:"}}),
-      (folder / "study.yaml").string()));
+  const PredictionStudy study = ReadPulledBarStudy(
+      folder, {{"time_step: 1 s", "time_step: " + time_step},
+               {"motion:",
+                "effects: [{type: viscoelastic_branch, modulus: 30 kPa, relaxation_time: 3 s}]\n"
+                "motion:"}});
   const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 1));
   const LinearisedMisfit misfit = problem.Linearise(problem.Start(), {});
   EXPECT_TRUE(misfit.usable) << misfit.message;

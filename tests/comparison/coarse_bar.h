@@ -1,4 +1,5 @@
-// Models of the held bar (support/held_bar.h) that are coarser than the truth.
+// Models of the held bar (support/held_bar.h) that are coarser than the truth, and what is expected
+// of their comparison with the recordings.
 #ifndef LACUNA_TESTS_COMPARISON_COARSE_BAR_H_
 #define LACUNA_TESTS_COMPARISON_COARSE_BAR_H_
 
@@ -9,14 +10,18 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "calibration/calibration_run.h"
+#include "comparison/compared_motion.h"
+#include "comparison/run_comparison.h"
 #include "comparison/unexplained_force.h"
 #include "core/config.h"
 #include "prediction/prediction_study_reader.h"
 #include "record/comparison_record.h"
+#include "record/motion_record.h"
 #include "support/held_bar.h"
 #include "support/silent_progress.h"
 
@@ -47,6 +52,14 @@ inline bool RunBarWithLittleDamping(const std::filesystem::path& folder,
   return RunCalibration(ReadPredictionStudy(Config::Load(experiment)), &progress).usable;
 }
 
+// The comparison of a run with what was recorded, with all that needs the motion.
+inline Comparison CompareWithMotion(const std::filesystem::path& run) {
+  Comparison comparison = CompareRun(run);
+  SilentProgress progress;
+  CompareMotion(run, &progress, &comparison);
+  return comparison;
+}
+
 // Rms over time of the error of one component of the net force, N.
 inline double NetForceError(const ForceHistory& history, const HeldBarTruth& truth, int axis) {
   double squares = 0;
@@ -66,6 +79,15 @@ inline void ExpectTrendsOfTheMotion(const ComparedRecording& bar) {
   const std::vector<ErrorBin>& strain = (bar.parts[0].trends.end() - 3)->bins;
   EXPECT_GT(strain.back().mean, 0.005);
   EXPECT_LT(strain.back().mean, 0.2);
+}
+
+// Expects that the motion which a run has stored for the report belongs to this fit, and that the
+// last of its fields is the unexplained force, which is not zero.
+inline void ExpectForceInMotion(const StoredMotion& motion, const std::string& fit) {
+  EXPECT_EQ(motion.fit, fit);
+  const nlohmann::json& field = motion.surface.at("fields").back();
+  EXPECT_EQ(field.at("name"), "unexplained_force");
+  EXPECT_GT(field.at("high").get<double>(), 0);
 }
 
 }  // namespace lacuna

@@ -1,3 +1,4 @@
+// The comparison of a model with markers, for which it is run again.
 #include "comparison/compared_motion.h"
 
 #include <gmock/gmock.h>
@@ -9,12 +10,10 @@
 #include "calibration/calibration_run.h"
 #include "comparison/coarse_bar.h"
 #include "comparison/comparison_files.h"
-#include "comparison/run_comparison.h"
 #include "record/csv_table.h"
 #include "record/motion_record.h"
 #include "report/comparison_report.h"
 #include "support/held_bar.h"
-#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -38,13 +37,11 @@ TEST(ComparedMotion, SaysThatForcesAreOfUnknownScaleWhereAModulusIsNotDetermined
 TEST(ComparedMotion, AddsStrainAndHeightAndWritesFieldsAndTheForce) {
   const TemporaryFolder folder;
   HeldBarTruth truth;
-  truth.alpha = 8;
+  truth.alpha = 8;  // 1/s; the model has 1
   WriteBarRecording(folder.Path(), FilmHeldBar(truth));
   ASSERT_TRUE(RunBarWithLittleDamping(folder.Path(), "1.5 ms"));
-  SilentProgress progress;
   const std::filesystem::path run = folder / "run";
-  Comparison comparison = CompareRun(run);
-  CompareMotion(run, &progress, &comparison);
+  const Comparison comparison = CompareWithMotion(run);
   EXPECT_THAT(comparison.record.notes, testing::IsEmpty());
   const ComparedRecording& bar = comparison.record.recordings.at(0);
   EXPECT_TRUE(bar.height_by_gravity);
@@ -56,7 +53,7 @@ TEST(ComparedMotion, AddsStrainAndHeightAndWritesFieldsAndTheForce) {
   EXPECT_THAT(DescribeComparison(comparison.record),
               Contains(HasSubstr("it removes energy from the motion")));
 
-  SaveComparison(comparison, run);
+  WriteComparison(comparison, run);
   const CsvTable force = LoadCsv(run / "comparison/unexplained_force.csv");
   EXPECT_EQ(force[0].values.size(), comparison.forces.at(0)->history.times.size());
   std::ifstream stream(run / "comparison/comparison.json");
@@ -69,17 +66,13 @@ TEST(ComparedMotion, AddsStrainAndHeightAndWritesFieldsAndTheForce) {
        {"body.pvd", "markers.pvd", "fields/body_00004.vtu", "fields/body_00025.vtu"})
     EXPECT_TRUE(std::filesystem::exists(run / "comparison/0" / file)) << file;
 
-  // The motion for the report has the force.
   const StoredMotion motion = ReadMotionFile(MotionFile(run, 0));
-  EXPECT_EQ(motion.fit, comparison.record.fit);
   EXPECT_EQ(motion.times.size(), 26u);
-  EXPECT_EQ(motion.surface.at("fields").back().at("name"), "unexplained_force");
-  EXPECT_GT(motion.surface.at("fields").back().at("high").get<double>(), 0);
+  ExpectForceInMotion(motion, comparison.record.fit);
 
   // With a changed experiment the model is no longer the one that was fitted.
   std::ofstream(folder / "study.yaml", std::ios::app) << "density: 900 kg/m^3\n";
-  Comparison changed = CompareRun(run);
-  CompareMotion(run, &progress, &changed);
+  const Comparison changed = CompareWithMotion(run);
   EXPECT_THAT(changed.record.notes, Contains(HasSubstr("has changed since")));
   EXPECT_FALSE(changed.record.recordings.at(0).force);
 }

@@ -39,10 +39,8 @@ TEST(ComparedScan, AddsTrendsFieldsAndTheForce) {
   truth.alpha = 8;  // 1/s; the model has 1
   ScanHeldBar(truth, folder.Path());
   ASSERT_TRUE(RunBarWithLittleDamping(folder.Path(), "3 ms"));
-  SilentProgress progress;
   const std::filesystem::path run = folder / "run";
-  Comparison comparison = CompareRun(run);
-  CompareMotion(run, &progress, &comparison);
+  const Comparison comparison = CompareWithMotion(run);
   EXPECT_THAT(comparison.record.notes, testing::IsEmpty());
   const ComparedRecording& bar = comparison.record.recordings.at(0);
   EXPECT_TRUE(bar.is_scan);
@@ -57,7 +55,7 @@ TEST(ComparedScan, AddsTrendsFieldsAndTheForce) {
   EXPECT_LT(bar.force->fit.rms_over_sigma_with, bar.force->fit.rms_over_sigma_without);
   EXPECT_THAT(DescribeComparison(comparison.record), Contains(HasSubstr("bar, unexplained force")));
 
-  SaveComparison(comparison, run);
+  WriteComparison(comparison, run);
   EXPECT_TRUE(std::filesystem::exists(run / "comparison/unexplained_force.csv"));
   // 13 of the 16 frames lie after the release; the last one before it shows the bar at rest.
   EXPECT_EQ(bar.field_frames, 14);
@@ -69,15 +67,13 @@ TEST(ComparedScan, AddsTrendsFieldsAndTheForce) {
   EXPECT_THAT(patches, HasSubstr("\"along_normal_m\""));
   EXPECT_THAT(patches, HasSubstr("\"patch\""));
 
-  const StoredMotion motion = ReadMotionFile(MotionFile(run, 0));
-  EXPECT_EQ(motion.fit, comparison.record.fit);
-  EXPECT_EQ(motion.surface.at("fields").back().at("name"), "unexplained_force");
-  EXPECT_GT(motion.surface.at("fields").back().at("high").get<double>(), 0);
+  ExpectForceInMotion(ReadMotionFile(MotionFile(run, 0)), comparison.record.fit);
 
   // Residuals of another model: in one frame, all patches lie farther out by the noise of one
   // point.
   Comparison other = CompareRun(run);
   other.residuals.at(0).along_normal.col(5).array() += kScanNoise;
+  SilentProgress progress;
   CompareMotion(run, &progress, &other);
   EXPECT_THAT(other.record.notes, Contains(HasSubstr("no longer predicts bar")));
   EXPECT_FALSE(other.record.recordings.at(0).force);

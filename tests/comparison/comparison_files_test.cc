@@ -29,7 +29,7 @@ TEST(Comparison, WritesItsFilesAndLeavesTheRunUnchanged) {
   WriteRun(run, {.error = LowMarker});
   const std::string manifest = FileContent(run / "manifest.json");
   const Comparison comparison = CompareRun(run);
-  SaveComparison(comparison, run);
+  WriteComparison(comparison, run);
   EXPECT_EQ(FileContent(run / "manifest.json"), manifest);
   const json record = json::parse(FileContent(run / "comparison/comparison.json"));
   const json& held_out = record.at("recordings").at(0).at("parts").at(1);
@@ -55,7 +55,7 @@ TEST(Comparison, AStoredComparisonIsPrintedAsItWasWhenItWasMade) {
   WriteRun(run, {.recordings = {"a", "b"}, .error = LowMarker});
   const Comparison comparison = CompareRun(run);
   const ComparisonRecord& made = comparison.record;
-  SaveComparison(comparison, run);
+  WriteComparison(comparison, run);
   std::filesystem::remove_all(run / "calibration");
   const ComparisonRecord stored = ReadComparisonFile(run / "comparison/comparison.json");
   EXPECT_EQ(DescribeComparison(stored), DescribeComparison(made));
@@ -92,7 +92,7 @@ TEST(Comparison, AFitOfAnEarlierVersionIsRefused) {
   directory.Store("calibration", "other", [&](const std::filesystem::path& stage) {
     std::filesystem::copy_file(folder / "run/calibration/calibration.json",
                                stage / "calibration.json");
-    SaveCsv(table, stage / "misfit.csv");
+    WriteCsv(table, stage / "misfit.csv");
   });
   directory.Finish();
   EXPECT_THAT(WhyNotCompared(folder / "run"), HasSubstr("run `lacuna fit` again"));

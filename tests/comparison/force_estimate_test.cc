@@ -7,12 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "calibration/calibration_fits.h"
 #include "calibration/calibration_problem.h"
 #include "comparison/coarse_bar.h"
 #include "support/held_bar.h"
 #include "support/replace_in_file.h"
-#include "support/silent_progress.h"
+#include "support/silent_fit.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -26,8 +25,7 @@ UnexplainedForce ForceOn(const HeldBarTruth& truth) {
   WriteBarRecording(folder.Path(), FilmHeldBar(truth));
   const PredictionStudy study = ReadCoarseBarStudy(folder.Path());
   const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 2));
-  SilentProgress progress;
-  const Calibration calibration = FitFromStart(problem, &progress);
+  const Calibration calibration = FitSilently(problem);
   EXPECT_TRUE(calibration.usable) << calibration.message;
   const RecordingModel model = problem.ModelAt(0, calibration.parameters);
   const ReplayedMotion motion = Replay(model, problem.NuisanceOf(0, calibration.parameters));
@@ -81,6 +79,16 @@ TEST(ForceEstimate, KeepsTheFittedPlacementOfAClamp) {
   EXPECT_LT(force.fit.rms_over_sigma_with, 1.2);
   for (int axis = 0; axis < 3; ++axis)
     EXPECT_LT(force.net.rms[axis], 2 * force.net.rms_deviation[axis]) << axis;
+}
+
+// An error that has grown is no solution, however close to the noise the prediction is.
+TEST(ForceEstimate, DoesNotEndWithAStepThatIncreasesTheError) {
+  EXPECT_TRUE(HasConverged(1.1, 0.8, 1.05));
+  EXPECT_FALSE(HasConverged(1.1, 0.8, 1.25));
+  EXPECT_TRUE(HasConverged(9, 5, 5.3));
+  EXPECT_FALSE(HasConverged(9, 5, 6));
+  // At the solution, a step changes nothing but digits.
+  EXPECT_TRUE(HasConverged(1, 0.9999, 1.0001));
 }
 
 TEST(ForceEstimate, IsWithinItsUncertaintyIfTheModelIsComplete) {

@@ -146,7 +146,7 @@ CsvTable WriteRun(const std::filesystem::path& run, const PlantedRun& planted) {
   directory.Begin({{"recordings", entries}}, {}, 0);
   directory.Store("calibration", "key", [&](const std::filesystem::path& folder) {
     std::ofstream(folder / "calibration.json") << CalibrationOf(planted).dump(2);
-    SaveCsv(misfit, folder / "misfit.csv");
+    WriteCsv(misfit, folder / "misfit.csv");
   });
   directory.Store("mesh", "key", [](const std::filesystem::path& folder) {
     ReferenceBody body;

@@ -66,7 +66,7 @@ TEST(Comparison, EachMarkerCountsInUnitsOfItsOwnNoise) {
         EXPECT_NEAR(bin.rms_over_sigma, 1, 0.4) << trend.quantity;  // at least 40 coordinates
   }
   EXPECT_NEAR(recording.noise_floor.floor, PlantedRun::kNoise, 0.3 * PlantedRun::kNoise);
-  SaveComparison(comparison, run);
+  WriteComparison(comparison, run);
   const CsvTable by_marker = LoadCsv(run / "comparison/by_marker.csv");
   ASSERT_EQ(by_marker[5].name, "rms_over_sigma");
   ASSERT_EQ(by_marker[5].values.size(), 2 * PlantedRun::kMarkers);

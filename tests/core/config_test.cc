@@ -13,7 +13,10 @@
 namespace lacuna {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr char kBeam[] = R"(schema_version: 1
 material:
@@ -72,6 +75,28 @@ TEST(Config, RefusesValuesOutOfBounds) {
       "a.yaml:1:16: poisson_ratio: got \"0.7\"; expected a plain number in (-1, 0.5)");
   ExpectInputError([&] { config.Number("scale", kPositive); },
                    "a.yaml:2:8: scale: got \"-1\"; expected a plain number > 0");
+}
+
+// In a flow mapping, a decimal comma begins another key.
+TEST(Config, SaysThatTheDecimalSeparatorIsAPoint) {
+  const auto refusal_of = [](const char* text) {
+    const Config config = Config::Parse(text, "a.yaml");
+    try {
+      config.Child("material").Quantity("young_modulus", kPressure, kPositive);
+    } catch (const InputError& problem) {
+      return std::string(problem.what());
+    }
+    return std::string("nothing was refused");
+  };
+  EXPECT_THAT(refusal_of("material: {young_modulus: 0,2 MPa, law: neo_hookean}"),
+              HasSubstr("a.yaml:1:27: material.young_modulus: got \"0\""));
+  EXPECT_THAT(refusal_of("material: {young_modulus: 0,2 MPa, law: neo_hookean}"),
+              EndsWith("; the decimal separator must be a point: \"0.2 MPa\""));
+  EXPECT_THAT(refusal_of("material: {young_modulus: 1,05 MPa}"), EndsWith("\"1.05 MPa\""));
+  for (const char* other : {"material: {young_modulus: 0, law: neo_hookean}",
+                            "material: {young_modulus: 1, 5 mm}", "material: {young_modulus: 0, b}",
+                            "material: {young_modulus: 0}", "material: {2 MPa, young_modulus: 0}"})
+    EXPECT_THAT(refusal_of(other), AllOf(HasSubstr("got"), Not(HasSubstr("separator")))) << other;
 }
 
 TEST(Config, RefusesUnknownKeysWithTheNearestKnownOne) {

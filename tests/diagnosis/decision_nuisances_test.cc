@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "diagnosis/decision.h"
@@ -98,6 +100,26 @@ TEST(Decide, WeighsANuisanceAgainstAPairOnlyAfterItsFit) {
   // The fit may show that first order has overrated the pair.
   input.pairs.front().gain = 10;
   EXPECT_THAT(Decide(input).record.probabilities.front().names, ElementsAre("gravity", "slip"));
+}
+
+// Whether a nuisance is already part of the base does not change its prior: alone it has that of
+// one nuisance, and beside an effect the product of both.
+TEST(Decide, GivesAnAdoptedNuisanceThePriorOfANuisance) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(16);
+  DecisionInput input = InputWithAdopted(synthetic, noise, "jitter");
+  input.adopted_evidence = 1;
+  input.refits.push_back({"drag", 3, synthetic.With(noise)});
+  const std::vector<HypothesisProbability> all = Decide(input).record.probabilities;
+  const auto probability = [&](const std::vector<std::string>& names) {
+    for (const HypothesisProbability& one : all)
+      if (one.names == names) return one.probability;
+    return std::numeric_limits<double>::quiet_NaN();
+  };
+  const double nothing = probability({});
+  EXPECT_NEAR(probability({"jitter"}) / nothing, 0.15 / 0.5 * std::exp(1), 1e-9);
+  EXPECT_NEAR(probability({"drag", "jitter"}) / nothing, 0.3 * 0.15 / 0.5 * std::exp(1 + 3) / 4,
+              1e-9);
 }
 
 // Nuisances in the base compete with effects in their place.

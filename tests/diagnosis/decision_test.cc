@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -86,6 +87,57 @@ TEST(Decide, BelievesARefitMoreThanFirstOrder) {
   // The unknown error of the model counts against every effect.
   input.baseline.model_error = 50;
   EXPECT_EQ(Decide(input).verdict, Verdict::kAdequate);
+}
+
+// The log Bayes factor of an effect to first order.
+double FirstOrder(const DecisionInput& input, const std::string& effect) {
+  const HypothesisSpace& space = input.baseline;
+  std::vector<int> with = space.base;
+  for (const WeighedHypothesis& one : space.hypotheses)
+    if (one.name == effect) with.insert(with.end(), one.columns.begin(), one.columns.end());
+  return space.model.Fit(with, space.variance).log_evidence -
+         space.model.Fit(space.base, space.variance).log_evidence;
+}
+
+// What was not refitted keeps the share that the best refit has kept, both less the logarithm of
+// the number of effects. The error of the model is subtracted from what is left.
+TEST(Decide, ReducesFirstOrderByTheShareThatTheBestRefitHasKept) {
+  const SyntheticSpace synthetic;
+  DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(15) - 12 * synthetic.Of("drag") -
+                                               7 * synthetic.Of("fibres"));
+  input.baseline.model_error = 2;
+  input.refits.push_back({"drag", 30, synthetic.With(SyntheticSpace::Noise(15))});
+  const double of_four = std::log(4);
+  const double drag = FirstOrder(input, "drag") - of_four;
+  const double fibres = FirstOrder(input, "fibres") - of_four;
+  ASSERT_GT(drag, 40);
+  ASSERT_GT(fibres, 5);
+  const auto evidence = [&](const std::string& effect) {
+    for (const HypothesisProbability& one : Decide(input).record.probabilities)
+      if (one.names == std::vector<std::string>{effect}) return one.evidence;
+    return std::numeric_limits<double>::quiet_NaN();
+  };
+  EXPECT_NEAR(evidence("fibres"), fibres * (30 - of_four) / drag - 2, 1e-6);
+  EXPECT_NEAR(evidence("drag"), 30 - of_four - 2, 1e-9);
+  // A refit that has kept everything, and one that has no evidence, say nothing of the others.
+  input.refits.front().evidence = drag + of_four;
+  EXPECT_NEAR(evidence("fibres"), fibres - 2, 1e-6);
+  input.refits.front().evidence = 0.9 * of_four;
+  EXPECT_NEAR(evidence("fibres"), fibres - 2, 1e-6);
+}
+
+// The posterior alone is that of the whole decision.
+TEST(PosteriorOf, IsThatOfTheDecision) {
+  const SyntheticSpace synthetic;
+  DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(15) - 8 * synthetic.Of("drag"));
+  input.refits.push_back({"mass_damping", 40, synthetic.With(SyntheticSpace::Noise(15))});
+  const std::vector<HypothesisProbability> alone = PosteriorOf(input);
+  const std::vector<HypothesisProbability> whole = Decide(input).record.probabilities;
+  ASSERT_EQ(alone.size(), whole.size());
+  for (size_t k = 0; k < whole.size(); ++k) {
+    EXPECT_EQ(alone[k].names, whole[k].names);
+    EXPECT_EQ(alone[k].probability, whole[k].probability);
+  }
 }
 
 // An effect that does not lower the error of the held-out frames is not named, alone or in a pair.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -98,6 +99,9 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithoutTheEffect) {
   BaselineModel baseline{*problem_, fit_.parameters, misfit_, &progress_};
   const EffectRefit refit = Refit({baseline, none_}, &bed);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
+  // The modulus of the bed must be positive. It follows the parameters that the model had before.
+  const std::vector<int>& positive = refit.hypothesis.positive;
+  EXPECT_EQ(std::count(positive.begin(), positive.end(), study_.fitted.size()), 1);
   // A refit ends when a step gains less than one standard deviation.
   EXPECT_LE(refit.calibration.rms, 1.05 * fit_.rms);
   EXPECT_LT(refit.calibration.start_rms, 3 * fit_.rms);
@@ -159,6 +163,66 @@ TEST_F(EffectRefitOfACoarseBar, SaysWhyItHasNotConverged) {
   EXPECT_TRUE(refit.message.empty()) << refit.message;
   EXPECT_NE(refit.unconverged.find("would not come close enough"), std::string::npos)
       << refit.unconverged;
+}
+
+// At the other end of its range, at 0, the drag vanishes.
+TEST_F(EffectRefitOfACoarseBar, IsAtTheLimitOnlyWhereItsSizeIsLargest) {
+  const ScoredEffect drag = Drag();
+  const BaselineModel baseline{*problem_, fit_.parameters, misfit_, &progress_};
+  const ExtendedProblem extended(baseline, &drag, none_);
+  const std::vector<CalibratedParameter>& parameters = extended.problem().parameters();
+  const size_t own = study_.fitted.size();
+  const auto at_limit = [&](double value, Determination determination) {
+    Calibration calibration;
+    calibration.estimates.resize(parameters.size());
+    calibration.estimates[own].value = value;
+    calibration.estimates[own].determination = determination;
+    return extended.SizesAtLimit(calibration);
+  };
+  const double most = parameters[own].max;
+  EXPECT_EQ(at_limit(most, Determination::kAtBound), std::vector<bool>{true});
+  EXPECT_EQ(at_limit(0.5 * most, Determination::kPinnedDown), std::vector<bool>{false});
+  EXPECT_EQ(at_limit(parameters[own].min, Determination::kAtBound), std::vector<bool>{false});
+}
+
+TEST_F(EffectRefitOfACoarseBar, IsNotSettledWhereItEndsAboveAHopelessCost) {
+  const ScoredEffect drag = Drag();
+  const BaselineModel baseline{*problem_, fit_.parameters, misfit_, &progress_};
+  const EffectRefit refit = Refit({baseline, none_}, &drag);
+  ASSERT_TRUE(refit.calibration.usable) << refit.unconverged;
+  EXPECT_EQ(refit.unconverged, "");
+  // The search has converged where it starts.
+  const EffectRefit again =
+      RefitFromValues({baseline, none_}, &drag, refit.calibration.parameters, 0);
+  ASSERT_TRUE(again.calibration.usable) << again.unconverged;
+  EXPECT_NE(again.unconverged.find("too far from the measurements"), std::string::npos)
+      << again.unconverged;
+  EXPECT_EQ(again.values_at_fit, again.calibration.parameters);
+  EXPECT_EQ(again.at_fit.misfit.residual, again.hypothesis.misfit.residual);
+}
+
+// The progress has a line for each prediction of a fit, and none for those that compare starts.
+TEST_F(EffectRefitOfACoarseBar, CountsThePredictionsThatFindItsStart) {
+  const ScoredEffect drag = Drag();
+  const auto predictions = [&](RefitFrom from, int* of_fits) {
+    std::ostringstream lines;
+    Progress progress({.style = ProgressStyle::kJsonLines, .json_interval = 0, .stream = &lines});
+    const BaselineModel baseline{*problem_, fit_.parameters, misfit_, &progress};
+    const EffectRefit refit = Refit({baseline, none_}, &drag, {.from = from});
+    const std::string text = lines.str();
+    *of_fits = 0;
+    for (size_t at = text.find("\"progress\""); at != std::string::npos;
+         at = text.find("\"progress\"", at + 1))
+      ++*of_fits;
+    return refit.calibration.predictions;
+  };
+  int of_fits = 0;
+  EXPECT_EQ(predictions(RefitFrom::kFixedSize, &of_fits), of_fits);
+  EXPECT_GT(of_fits, 4);  // of three fits with the effect held, and one without
+  // The expected values are the baseline's own, which are predicted once.
+  const int all = predictions(RefitFrom::kFirstOrder, &of_fits);
+  EXPECT_GE(all, of_fits + 1);
+  EXPECT_LE(all, of_fits + 5);
 }
 
 }  // namespace

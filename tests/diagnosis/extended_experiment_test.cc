@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "diagnosis/candidates.h"
+#include "diagnosis/diagnosis_run.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/rank_effects.h"
 #include "effects/catalogue.h"
@@ -187,6 +188,9 @@ TEST(ExtendedExperiment, ALawTakesTheOthersPlaceAndAPlaneIsAdded) {
       "plane_contact", {{"stiffness", 1e8}, {"normal_y", 1}, {"normal_z", 0}, {"offset", -0.0123}});
   contact.candidate.refined = {{"offset", 1e-3}};
   contact.score.size = Eigen::VectorXd::Constant(1, 0.8);
+  contact.candidate.prior_centre = contact.candidate.effect->Parameters();
+  const int offset = ParameterIndex(contact.candidate.effect->Card(), "offset");
+  contact.candidate.prior_centre[offset] = -0.012;  // where the refit started
   const PredictionStudy more =
       ReadPredictionStudy(Config::Load(WriteExtendedExperiment(fitted, run, contact)));
   ASSERT_EQ(more.effects.size(), fitted.study.effects.size() + 1);
@@ -194,6 +198,43 @@ TEST(ExtendedExperiment, ALawTakesTheOthersPlaceAndAPlaneIsAdded) {
   // The modulus, and the place of the plane.
   ASSERT_EQ(more.fitted.size(), 2u);
   EXPECT_EQ(more.fitted[1].prior.name, "plane_contact.offset");
+  EXPECT_EQ(more.fitted[1].prior.prior_mean, -0.012);
+  EXPECT_EQ(more.fitted[1].prior.prior_deviation, 1e-3);
+  // The modulus has no prior in the experiment: its start was the mean, and it stays so.
+  const CalibratedParameter& modulus = fitted.study.fitted[0].prior;
+  ASSERT_TRUE(std::isnan(modulus.prior_mean));
+  ASSERT_NE(modulus.start, fitted.values[0]);
+  EXPECT_EQ(more.fitted[0].prior.start, fitted.values[0]);
+  EXPECT_EQ(more.fitted[0].prior.prior_mean, modulus.start);
+  EXPECT_NEAR(more.fitted[0].prior.prior_deviation, modulus.prior_deviation,
+              1e-12 * modulus.prior_deviation);
+}
+
+// The sizes of a diagnosis count from the null value of a law, its parameters do not.
+TEST(ExtendedExperiment, ALawThatVanishesElsewhereStartsWhereItsRefitEnded) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  FittedRun fitted;
+  fitted.study = ReadBarStudy(
+      folder.Path(),
+      {{"name: bar\n",
+        "name: bar\ncandidates: [{type: expression, name: push, per: mass, force: [a - 3, 0, 0], "
+        "parameters: {a: {value: 4 m/s^2, plausible: [-6 m/s^2, 12 m/s^2], null_value: 3 "
+        "m/s^2}}}]\n"}});
+  std::filesystem::create_directory(folder / "diagnosis");
+  std::ofstream(folder / "diagnosis/of_fit.json")
+      << R"({"settings": {"push": {"values": [7], "start": [5], "model": [], "amplitude": [0],
+             "refined": {}, "known": {}, "replaces_material": false}}})";
+  RecordedEffect recorded;
+  recorded.type = "push";
+  recorded.sizes.resize(1);
+  const ScoredEffect push = DiagnosedEffect(fitted, folder.Path(), recorded);
+  EXPECT_EQ(push.score.size[0], 4);
+  EXPECT_EQ(push.candidate.prior_centre[0], 5);
+  const PredictionStudy with = WithEffect(fitted.study, push);
+  EXPECT_EQ(with.effects.back()->Parameters()[0], 7);
+  EXPECT_EQ(with.fitted.back().prior.prior_mean, 3);
+  EXPECT_EQ(with.fitted.back().prior.prior_deviation, 9);
 }
 
 TEST(ExtendedExperiment, ExplainsWhyAnEffectCannotBeDetected) {

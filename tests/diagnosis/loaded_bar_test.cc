@@ -319,13 +319,12 @@ gripped:
           kNoise, (folder_ / "recording.yaml").string()),
       (folder_ / "study.yaml").string()));
   const CalibrationProblem problem(study, BarMesh({7, 1, 1}, 2));
-  const GripMotions grips = MakeGripMotions(problem);
   const Eigen::VectorXd start = problem.Start();
-  const LinearisedMisfit misfit =
-      problem.Linearise(start, {.with_jacobian = true, .directions = grips.directions});
+  const LinearisedWithGrips linearised = LineariseWithGrips(problem, start, {});
+  const GripMotions& grips = linearised.grips;
+  const LinearisedMisfit& misfit = linearised.misfit;
   ASSERT_TRUE(misfit.usable) << misfit.message;
-  const Eigen::MatrixXd grip_columns =
-      misfit.jacobian.rightCols(static_cast<Eigen::Index>(grips.directions.size()));
+  const Eigen::MatrixXd grip_columns = linearised.OfGrips();
   const std::vector<NuisanceCandidate> nuisances =
       ModelNuisances({problem, start, misfit, grips, grip_columns});
   const auto jitter = std::find_if(nuisances.begin(), nuisances.end(), [](const auto& nuisance) {
@@ -346,13 +345,20 @@ gripped:
   // With too many frames for a column each, the recording is named instead.
   LinearisedMisfit many = misfit;
   many.parts.front().layout.times.resize(kThresholds.nuisances.most_single_frames + 1);
+  // With too many rows for the columns of all frames, it says how much memory these would need.
+  LinearisedMisfit large = misfit;
+  large.residual.resize(500'000);
   for (const NuisanceEntry& entry : NuisanceCatalogue()) {
     if (entry.card.name != "grip_jitter") continue;
-    const std::optional<NuisanceCandidate> made =
-        std::get<ModelNuisance>(entry.make)({problem, start, many, grips, grip_columns});
-    ASSERT_TRUE(made.has_value());
-    EXPECT_EQ(made->columns.cols(), 0);
-    EXPECT_THAT(made->left_out, testing::ElementsAre(study.recordings.front().name));
+    const auto make = [&](const LinearisedMisfit& along) {
+      return std::get<ModelNuisance>(entry.make)({problem, start, along, grips, grip_columns});
+    };
+    const std::optional<NuisanceCandidate> of_many = make(many), of_large = make(large);
+    ASSERT_TRUE(of_many.has_value() && of_large.has_value());
+    EXPECT_EQ(of_many->columns.cols(), 0);
+    EXPECT_THAT(of_many->left_out, testing::ElementsAre(study.recordings.front().name));
+    EXPECT_EQ(of_large->columns.cols(), 0);
+    EXPECT_THAT(of_large->untried, testing::HasSubstr("1.5 GB"));
   }
 }
 

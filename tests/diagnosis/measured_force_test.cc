@@ -12,7 +12,6 @@
 #include "diagnosis/rank_effects.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "effects/catalogue.h"
-#include "prediction/prediction_study_reader.h"
 #include "report/verdict_text.h"
 #include "support/pulled_bar.h"
 #include "support/silent_progress.h"
@@ -27,8 +26,7 @@ struct StiffeningBar {
     PulledBarTruth truth;
     truth.hidden = {MakeEffect("strain_stiffening", {{"modulus", 8e4}})};
     WritePulledBar(folder.Path(), truth, measured_force);
-    study = ReadPredictionStudy(
-        Config::Parse(PulledBarExperiment(folder.Path()), (folder / "study.yaml").string()));
+    study = ReadPulledBarStudy(folder.Path());
     problem = std::make_unique<CalibrationProblem>(study, BarMesh({6, 1, 1}, 2));
     values = FitFromStart(*problem, &progress).parameters;
   }
@@ -77,6 +75,29 @@ TEST(MeasuredForceInADiagnosis, LeadsToTheEffectThatIsMissing) {
   EXPECT_GT(found->removed->forces, std::max(1.0, found->evidence));
   EXPECT_LT(std::abs(found->removed->markers), found->removed->forces);
   EXPECT_EQ(found->removed->scans, 0);
+}
+
+// A model of which nothing is fitted has no estimates, and the evidence of its hypotheses comes
+// from the effects alone.
+TEST(DiagnosisWithoutFittedParameters, LeadsToTheEffectThatIsMissing) {
+  const TemporaryFolder folder;
+  PulledBarTruth truth;
+  truth.hidden = {MakeEffect("strain_stiffening", {{"modulus", 8e4}})};
+  WritePulledBar(folder.Path(), truth);
+  const PredictionStudy study = ReadPulledBarStudy(
+      folder.Path(),
+      {{"[{name: young_modulus}]", "[]"}, {"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"}});
+  const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
+  ASSERT_TRUE(problem.parameters().empty());
+  SilentProgress progress;
+  const Calibration fit = FitFromStart(problem, &progress);
+  ASSERT_TRUE(fit.usable) << fit.message;
+  const Diagnosis diagnosis =
+      Diagnose(problem, fit.parameters, {.refits = 1, .without = {}}, &progress);
+  EXPECT_TRUE(diagnosis.verdict == Verdict::kMissing || diagnosis.verdict == Verdict::kAmbiguous)
+      << ExplainVerdict(RecordOf(diagnosis));
+  EXPECT_THAT(diagnosis.effects, testing::Contains("strain_stiffening"));
+  EXPECT_GT(diagnosis.noise_level.variance, 0);
 }
 
 }  // namespace

@@ -12,9 +12,10 @@
 namespace lacuna {
 namespace {
 
-PredictionStudy ElasticBar() {
+PredictionStudy ElasticBar(double young_modulus = 1e5) {
   PredictionStudy study;
-  study.effects = {MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}})};
+  study.effects = {
+      MakeEffect("neo_hookean", {{"young_modulus", young_modulus}, {"poisson_ratio", 0.4}})};
   return study;
 }
 
@@ -111,6 +112,25 @@ TEST(WithEffect, LeavesTheKnownWeightOfAMass) {
     for (const ModelParameter& parameter : with.fitted)
       EXPECT_EQ(parameter.places.size(), of_mass == 0 ? 2u : 1u) << parameter.prior.name;
   }
+}
+
+// In a body of 5 MPa a branch may have half of that, and a prior that does not speak against it.
+TEST(WithEffect, LooksForStiffBranchesInStiffBodies) {
+  const PredictionStudy study = ElasticBar(5e6);
+  ScoredEffect scored;
+  scored.candidate = CandidateFor(study, "viscoelastic_branch");
+  ASSERT_NE(scored.candidate.effect, nullptr);
+  EXPECT_DOUBLE_EQ(AmountsOf(scored.candidate).front().plausible, 1.5e7);
+  scored.score.size = Eigen::VectorXd::Constant(1, 2.5e6);
+  EXPECT_EQ(StartOfRefit(scored)[scored.candidate.amplitude.front()], 2.5e6);
+  for (const ModelParameter& parameter : WithEffect(study, scored).fitted) {
+    if (parameter.prior.name != "viscoelastic_branch.modulus") continue;
+    EXPECT_EQ(parameter.prior.start, 2.5e6);
+    EXPECT_GT(parameter.prior.max, 1.5e7);
+    EXPECT_DOUBLE_EQ(parameter.prior.prior_deviation, 1.5e7);
+    return;
+  }
+  ADD_FAILURE() << "the modulus is not fitted";
 }
 
 // The card of swelling has an open bound, at which the body vanishes. Far inside it, a bound of the

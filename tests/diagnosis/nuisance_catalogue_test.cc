@@ -13,7 +13,6 @@
 #include "calibration/calibration_fits.h"
 #include "calibration/calibration_problem.h"
 #include "diagnosis/grip_motions.h"
-#include "prediction/prediction_study_reader.h"
 #include "support/pulled_bar.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
@@ -98,6 +97,37 @@ TEST(NuisanceCatalogue, MakesTheNuisancesOfARecordingFromItsFrames) {
   EXPECT_DOUBLE_EQ(drift(drift.rows() - 3, 0), 1);
 }
 
+// A mass that is removed from a bar that has none cannot be predicted, and a sheet has no other
+// mesh. What every model should contain must not vanish in silence.
+TEST(NuisanceCatalogue, SaysWhatCannotBeSimulated) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  PredictionStudy study = ReadBarStudy(
+      folder.Path(), {{"  - {type: mass_damping, alpha: 1 1/s}",
+                       "  - {type: attached_mass, mass: 1 g, centre: [0.08 m, 0 m, 0 m]}"},
+                      {"mass_damping.alpha", "attached_mass.mass"}});
+  study.recordings.front().recording.reference.sheet_thickness = 1e-3;  // m
+  const auto untried = [&] {
+    const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 1));
+    Eigen::VectorXd values = problem.Start();
+    const LinearisedMisfit misfit = problem.Linearise(values, {.with_jacobian = true});
+    EXPECT_TRUE(misfit.usable) << misfit.message;
+    values[1] = -1;  // kg
+    std::vector<std::string> names;
+    for (const NuisanceCandidate& nuisance :
+         ModelNuisances({problem, values, misfit, GripMotions{}, Eigen::MatrixXd()})) {
+      if (nuisance.untried.empty()) continue;
+      EXPECT_EQ(nuisance.columns.rows(), misfit.residual.size()) << nuisance.card.name;
+      EXPECT_EQ(nuisance.columns.cols(), 0) << nuisance.card.name;
+      names.push_back(nuisance.card.name);
+    }
+    return names;
+  };
+  EXPECT_THAT(untried(), testing::ElementsAre("mesh", "time_step", "shape"));
+  study.size_deviation = 0;  // the dimensions are exact: there is nothing to try
+  EXPECT_THAT(untried(), testing::ElementsAre("mesh", "time_step"));
+}
+
 // A bar whose free part is shorter, with other elements than those of the column. What the
 // parameters of the model follow does not count.
 TEST(NuisanceCatalogue, ExtendsAGripLikeAShorterBar) {
@@ -141,12 +171,10 @@ TEST(NuisanceCatalogue, ExtendsAGripLikeAShorterBar) {
 TEST(NuisanceCatalogue, OfARecordingWithALoadCellHaveItsRowsInTheClockOnly) {
   const TemporaryFolder folder;
   WritePulledBar(folder.Path(), {});
-  const PredictionStudy study = ReadPredictionStudy(
-      Config::Parse(PulledBarExperiment(folder.Path()), (folder / "study.yaml").string()));
+  const PredictionStudy study = ReadPulledBarStudy(folder.Path());
   const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
-  const GripMotions grips = MakeGripMotions(problem);
-  const LinearisedMisfit misfit =
-      problem.Linearise(problem.Start(), {.with_jacobian = true, .directions = grips.directions});
+  const LinearisedWithGrips linearised = LineariseWithGrips(problem, problem.Start(), {});
+  const LinearisedMisfit& misfit = linearised.misfit;
   ASSERT_TRUE(misfit.usable) << misfit.message;
   ASSERT_EQ(misfit.parts.size(), 2u);
   const LinearisedMisfit::Part& force = misfit.parts[1];
@@ -165,9 +193,7 @@ TEST(NuisanceCatalogue, OfARecordingWithALoadCellHaveItsRowsInTheClockOnly) {
   EXPECT_GE(recordings, 3);
   // A jaw that yields to its force reads less.
   bool any = false;
-  const Eigen::MatrixXd by_grips =
-      misfit.jacobian.rightCols(static_cast<Eigen::Index>(grips.directions.size()));
-  for (const NuisanceCandidate& nuisance : GripNuisances(grips, by_grips))
+  for (const NuisanceCandidate& nuisance : GripNuisances(linearised.grips, linearised.OfGrips()))
     any = any || (nuisance.card.name == "grip_compliance" &&
                   rows_of_force(nuisance.columns)(force.layout.Rows() - 1, 0) < 0);
   EXPECT_TRUE(any);

@@ -102,7 +102,7 @@ TEST(RankEffects, CountsTheErrorOfEffectsThatWereAddedBefore) {
   const EffectRanking first = rank({});
   study.explained_misfit = 10'000;
   const EffectRanking later = rank(first.scene);
-  EXPECT_NEAR(later.space.model_error - first.space.model_error, 0.5 * 0.01 * 10'000, 1e-6);
+  EXPECT_NEAR(later.ModelError() - first.ModelError(), 0.5 * 0.01 * 10'000, 1e-6);
 }
 
 // A nuisance that an earlier ranking has adopted along another motion, and one that cannot be made

@@ -10,13 +10,15 @@
 #include <iterator>
 #include <optional>
 #include <random>
+#include <utility>
 
-#include "calibration/calibration_fits.h"
+#include "calibration/calibration_problem.h"
+#include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
 #include "support/held_bar.h"
-#include "support/silent_progress.h"
+#include "support/silent_fit.h"
 #include "support/temporary_folder.h"
 #include "support/uniformity.h"
 
@@ -57,16 +59,13 @@ struct TwoRecordings {
     study = ReadPredictionStudy(Config::Parse(text, (folder / "study.yaml").string()));
     mesh = MakeReferenceBody(study).mesh;
     problem.emplace(study, mesh);
-    SilentProgress silent;
-    const Calibration fit = FitFromStart(*problem, &silent);
-    values = fit.parameters;
-    const GripMotions grips = MakeGripMotions(*problem);
-    misfit = problem->Linearise(values, {.with_jacobian = true, .directions = grips.directions});
-    const Eigen::MatrixXd grip_columns =
-        misfit.jacobian.rightCols(static_cast<Eigen::Index>(grips.directions.size()));
+    values = FitSilently(*problem).parameters;
+    LinearisedWithGrips linearised = LineariseWithGrips(*problem, values, {});
+    const Eigen::MatrixXd grip_columns = linearised.OfGrips();
+    misfit = std::move(linearised.misfit);
     shared.columns.resize(misfit.residual.size(), 0);
     for (const NuisanceCandidate& nuisance :
-         ModelNuisances({*problem, values, misfit, grips, grip_columns}))
+         ModelNuisances({*problem, values, misfit, linearised.grips, grip_columns}))
       if (nuisance.card.is_always_in_model) shared = shared.And(nuisance);
   }
 

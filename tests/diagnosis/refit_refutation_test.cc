@@ -84,6 +84,12 @@ TEST(Predicts, AllowsForChanceButNotForMore) {
   EffectRefit unconverged = with;
   unconverged.unconverged = "the search was ended";
   EXPECT_TRUE(Predicts(unconverged, without, kWhite)) << "other parameters may predict better";
+  EXPECT_TRUE(IsContradicted(unconverged, without, kWhite));
+  EffectRefit limited = with;
+  limited.at_limit = {false, true};
+  EXPECT_TRUE(Predicts(limited, without, kWhite)) << "a larger size may predict better";
+  limited.at_limit = {false, false};
+  EXPECT_FALSE(Predicts(limited, without, kWhite));
   without.errors.has_held_out = false;
   EXPECT_TRUE(Predicts(with, without, kWhite));
 }

@@ -3,19 +3,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "calibration/calibration_fits.h"
+#include "core/parallel.h"
+#include "core/progress.h"
 #include "diagnosis/effect_refit.h"
 #include "diagnosis/nuisance_refits.h"
 #include "diagnosis/pair_refit.h"
 #include "diagnosis/refit_comparison.h"
 #include "diagnosis/refits.h"
 #include "diagnosis/refitted_ranking.h"
+#include "diagnosis/variant_refit.h"
 #include "effects/catalogue.h"
 #include "support/held_bar.h"
 #include "support/silent_progress.h"
@@ -193,6 +198,7 @@ TEST_F(RefitsOfABar, AreComparedWithTheBestOneBesideTheSameColumns) {
   ranked.Take(0, {Drag(""), RefitDrag(model)});
   ranked.baseline_evidence = EvidenceOf(ranked.refits[0], kWhite).all - 1000;
   ranked.best = {.effect = 0, .evidence = 1e6, .underrated = 1e6};
+  ranked.failed_pairs = {{"drag", "gravity"}};  // beside the old columns
   EffectRanking along;
   along.adopted = ranking_.adopted;
   along.noise = kWhite;
@@ -202,6 +208,7 @@ TEST_F(RefitsOfABar, AreComparedWithTheBestOneBesideTheSameColumns) {
             EvidenceOf(ranked.refits[0], kWhite).all - ranked.baseline_evidence);
   EXPECT_LT(ranked.best->evidence, 1e5);
   EXPECT_EQ(ranked.best->underrated, ranked.best->evidence);  // first order gives no evidence
+  EXPECT_THAT(ranked.failed_pairs, testing::IsEmpty());
 }
 
 // A refit that is far behind, and that no change of its parameters brings near, is not predicted.
@@ -218,6 +225,32 @@ TEST_F(RefitsOfABar, StayWhereTheyAreIfTheyAreFarBehind) {
   EXPECT_EQ(stays.values_at_fit, behind.values_at_fit);
   EXPECT_EQ(stays.hypothesis.misfit.residual, behind.at_fit.misfit.residual);
   EXPECT_EQ(stays.at_fit.misfit.jacobian.cols(), stays.at_fit.parameters + 1);
+}
+
+// All that first order promises lies in the held-out frames, which a fit does not follow.
+TEST_F(RefitsOfABar, StayWhereTheyAreIfAFitWouldNotComeClose) {
+  const BaselineModel model = Model();
+  EffectRefit behind = RefitSupport(model);
+  ASSERT_TRUE(behind.message.empty());
+  LinearisedMisfit& misfit = behind.at_fit.misfit;
+  const Eigen::VectorXd column = misfit.jacobian.col(behind.at_fit.parameters - 1);
+  const double push = 100 / RmsOverSigma(column, misfit);
+  for (const LinearisedMisfit::Part& part : misfit.parts)
+    for (size_t f = 0; f < part.fitted.size(); ++f) {
+      const Eigen::Index first = part.first_row + static_cast<Eigen::Index>(f) * part.layout.series;
+      auto rows = misfit.residual.segment(first, part.layout.series);
+      if (part.fitted[f]) {
+        rows *= 10;
+        misfit.jacobian.middleRows(first, part.layout.series).setZero();
+      } else {
+        rows += push * column.segment(first, part.layout.series);
+      }
+    }
+  behind.at_fit.residual = misfit.residual;
+  behind.hypothesis = behind.at_fit;
+  const RefittedRanking ranked = LookedAlongDrag(model, behind, kWhite);
+  EXPECT_THAT(ranked.refits[1].unconverged, testing::HasSubstr("too far behind"));
+  EXPECT_EQ(ranked.refits[1].values_at_fit, behind.values_at_fit);
 }
 
 // A refit that seems to be far behind, here a support with another stiffness, is fitted again if
@@ -244,6 +277,54 @@ TEST_F(RefitsOfABar, AreFittedAgainWhereTheyOnlySeemedFarBehind) {
   EXPECT_EQ(again.at_fit.misfit.jacobian.cols(), again.at_fit.parameters + 1);
   ASSERT_TRUE(ranked.best.has_value());
   EXPECT_EQ(ranked.best->effect, 1u);  // the support explains more than drag
+}
+
+// The fit of drag is given up after its first steps. That first order says the same of it decides
+// whether another variant is tried.
+TEST_F(RefitsOfABar, AreNotRepeatedWhereTheFitAndFirstOrderAreHopeless) {
+  Eigen::VectorXd far = fit_.parameters;
+  far[0] *= 30;
+  const LinearisedMisfit misfit = problem_->Linearise(far, {.with_jacobian = true});
+  ASSERT_TRUE(misfit.usable) << misfit.message;
+  ScoredEffect drag = Drag("here");
+  drag.expected_values = far;
+  drag.elsewhere = {drag};
+  EffectRefit without;
+  without.message = "not needed";
+  without.errors.without_nuisances = 1e9;  // the refit predicts better
+  const auto fits = [&](bool is_far_ahead) {
+    std::ostringstream lines;
+    Progress progress({.style = ProgressStyle::kJsonLines, .stream = &lines});
+    const BaselineModel model{*problem_, far, misfit, &progress};
+    const VariantRefit refit =
+        RefitEffect({model, ranking_}, ranking_.adopted, without, /*is_found=*/true, drag,
+                    {-std::numeric_limits<double>::infinity(), is_far_ahead});
+    EXPECT_FALSE(refit.refit.calibration.usable);
+    const std::string text = lines.str();
+    int begun = 0;
+    for (size_t at = text.find("\"begin\""); at != std::string::npos;
+         at = text.find("\"begin\"", at + 1))
+      ++begun;
+    return begun;
+  };
+  EXPECT_EQ(fits(/*is_far_ahead=*/false), 2);
+  EXPECT_EQ(fits(/*is_far_ahead=*/true), 1);
+}
+
+// With a thread for it, the second start is looked for during the first fit.
+TEST_F(RefitsOfABar, FromTwoStartsDoNotDependOnTheNumberOfThreads) {
+  const BaselineModel model = Model();
+  const ScoredEffect drag = Drag("");
+  const int before = ThreadCount();
+  const auto refit = [&](int threads) {
+    SetThreadCount(threads);
+    return Refit({model, ranking_.adopted}, &drag, {.is_far_off = true});
+  };
+  const EffectRefit one = refit(1), two = refit(2);
+  SetThreadCount(before);
+  ASSERT_TRUE(one.message.empty()) << one.message;
+  EXPECT_EQ(one.calibration.parameters, two.calibration.parameters);
+  EXPECT_EQ(one.calibration.predictions, two.calibration.predictions);
 }
 
 // Each of the three comparisons of a pair allows for a third of one false refutation in 100:

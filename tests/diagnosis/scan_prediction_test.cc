@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "calibration/calibration_fits.h"
+#include "calibration/calibration_problem.h"
 #include "calibration/calibration_run.h"
 #include "calibration/held_out_misfit.h"
 #include "comparison/run_comparison.h"
@@ -14,6 +14,7 @@
 #include "report/comparison_report.h"
 #include "support/replace_in_file.h"
 #include "support/scanned_bar.h"
+#include "support/silent_fit.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
@@ -25,17 +26,13 @@ using testing::HasSubstr;
 constexpr char kClampedEnd[] =
     "fixed: [{name: clamp, half_space: {point: [0.002 m, 0 m, 0 m], normal: [-1, 0, 0]}}]\n";
 constexpr char kShape[] = "reference: {from: mesh, file: box.off}\n";
+// Fits the frames up to 0.2 s, and begins with twice the damping of the truth.
 const std::map<std::string, std::string> kUntil{{"fit_until: 0.1501", "fit_until: 0.2001"},
                                                 {"alpha: 1 1/s", "alpha: 4 1/s"}};
 
 const std::vector<TriMesh>& HeldSurfaces() {
   static const std::vector<TriMesh> surfaces = HeldBarSurfaces({});
   return surfaces;
-}
-
-Calibration FitOf(const CalibrationProblem& problem) {
-  SilentProgress progress;
-  return FitFromStart(problem, &progress);
 }
 
 std::string MessageOf(const std::function<void()>& action) {
@@ -78,7 +75,7 @@ TEST(ScanPrediction, RecoversWhatWasScanned) {
   // Obliquely seen faces are measured better along their normal than along the ray, those near an
   // edge are no planes.
   EXPECT_NEAR(problem.scan_noise(), kScanNoise, 0.3 * kScanNoise);
-  const Calibration fit = FitOf(problem);
+  const Calibration fit = FitSilently(problem);
   ASSERT_TRUE(fit.usable) << fit.message;
   EXPECT_GT(fit.start_rms, 10 * fit.rms);
   // Patches that only noise parts from the model; the estimate of the noise is a fifth too large.
@@ -104,7 +101,8 @@ TEST(ScanPrediction, RecoversWhatWasScanned) {
   EXPECT_TRUE(problem.models()[0].LostFrames(misfit.misfit, 0.95).empty());
 }
 
-// With correspondences kept, rows are linear in the nodes' positions.
+// With correspondences kept, rows are linear in the nodes' positions, so that those of the
+// derivative agree with central differences.
 TEST(ScanPrediction, DerivativeAgreesWithDifferences) {
   const TemporaryFolder folder;
   WriteBarScans(folder.Path(), HeldSurfaces(), std::string(kClampedEnd) + kShape);
@@ -139,7 +137,8 @@ TEST(ScanPrediction, DerivativeAgreesWithDifferences) {
   }
 }
 
-// Of depth images, as of points.
+// The points of depth images are matched with the surface in parallel. What a scan says must not
+// depend on how they were divided among the threads.
 TEST(ScanPrediction, IsTheSameForAnyNumberOfThreads) {
   const TemporaryFolder folder;
   WriteBarScans(folder.Path(), HeldSurfaces(), std::string(kClampedEnd) + kShape, WriteDepthFrames);
@@ -175,7 +174,7 @@ TEST(ScanPrediction, GoesTogetherWithMarkers) {
   const ResidualEvaluation start = problem.Predict(problem.Start(), false);
   ASSERT_TRUE(start.usable) << start.message;
   EXPECT_EQ(start.residual.size(), 6 * 150 + 11 * 3 * kMarkers);  // frames to 0.1 s of each
-  const Calibration fit = FitOf(problem);
+  const Calibration fit = FitSilently(problem);
   ASSERT_TRUE(fit.usable) << fit.message;
   EXPECT_EQ(fit.estimates.size(), 2u + 3u + 4u);  // a hold each, the markers' clock
   // A coarser mesh is 2 % stiffer, longer steps are 1 % slower.
@@ -242,7 +241,7 @@ TEST_F(CarriedBar, IsFollowedByItsGrip) {
     // Some 700 points of 0.4 mm each, and the lever arms of a corner.
     EXPECT_LT((moved - rest).colwise().norm().maxCoeff(), 3e-4) << frame;
   }
-  const Calibration fit = FitOf(problem);
+  const Calibration fit = FitSilently(problem);
   ASSERT_TRUE(fit.usable) << fit.message;
   // The mesh, and a motion that is only known to the noise.
   EXPECT_NEAR(fit.estimates[0].value, 1e5, 0.05 * 1e5);
@@ -338,7 +337,7 @@ TEST_F(CarriedBar, SaysWhereItLosesTheScan) {
   const CalibrationProblem problem(study, BarMesh({8, 1, 1}, 2));
   const Misfit start = MisfitsOf(problem, problem.Start())[0].misfit;
   EXPECT_THAT(problem.models()[0].LostFrames(start, 0.85), testing::SizeIs(testing::Gt(8u)));
-  const Calibration fit = FitOf(problem);
+  const Calibration fit = FitSilently(problem);
   EXPECT_FALSE(fit.usable);
   EXPECT_THAT(fit.message, HasSubstr("frames most scanned points are farther than scan.reach"));
 }

@@ -1,6 +1,7 @@
 // The columns of an unknown smooth force explain a force that was hidden in a recording.
 #include "diagnosis/unknown_force.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
@@ -18,7 +19,7 @@ namespace {
 
 enum class SeenBy { kMarkers, kScans };
 
-class UnknownForce : public testing::TestWithParam<SeenBy> {
+class HiddenForce : public testing::TestWithParam<SeenBy> {
  protected:
   // Records the bar while a body force acts that the model lacks.
   void Record() const {
@@ -37,7 +38,7 @@ class UnknownForce : public testing::TestWithParam<SeenBy> {
   const TemporaryFolder folder_;
 };
 
-TEST_P(UnknownForce, ExplainsAForceThatTheModelLacks) {
+TEST_P(HiddenForce, IsExplainedByTheColumns) {
   Record();
   // The model's mesh and time step are coarser than those of the recorded motion.
   const PredictionStudy study = ReadCoarseBarStudy(folder_.Path());
@@ -50,7 +51,9 @@ TEST_P(UnknownForce, ExplainsAForceThatTheModelLacks) {
         values[static_cast<Eigen::Index>(k)] = truth.hold_force[axis];
   const LinearisedMisfit misfit = problem.Linearise(values, {.with_jacobian = true});
   ASSERT_TRUE(misfit.usable) << misfit.message;
-  const Eigen::MatrixXd columns = UnknownForceColumns(problem, values, misfit);
+  const UnknownForce unknown = UnknownForceColumns(problem, values, misfit);
+  EXPECT_TRUE(unknown.untried.empty());
+  const Eigen::MatrixXd& columns = unknown.columns;
   ASSERT_EQ(columns.rows(), misfit.residual.size());
   ASSERT_GT(columns.cols(), 10);
   ASSERT_LE(columns.cols(), 40);
@@ -68,7 +71,24 @@ TEST_P(UnknownForce, ExplainsAForceThatTheModelLacks) {
   EXPECT_LT(left(all), 1.5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seen, UnknownForce, testing::Values(SeenBy::kMarkers, SeenBy::kScans));
+INSTANTIATE_TEST_SUITE_P(Seen, HiddenForce, testing::Values(SeenBy::kMarkers, SeenBy::kScans));
+
+// Three frames after the release do not tell how a force changes with time.
+TEST(UnknownForceColumns, SayWhichRecordingIsTooShort) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  PredictionStudy study = ReadCoarseBarStudy(folder.Path());
+  study.recordings.front().frames.resize(8);
+  const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 1));
+  const Eigen::VectorXd values = problem.Start();
+  const LinearisedMisfit misfit = problem.Linearise(values);
+  ASSERT_TRUE(misfit.usable) << misfit.message;
+  const UnknownForce unknown = UnknownForceColumns(problem, values, misfit);
+  EXPECT_EQ(unknown.columns.rows(), misfit.residual.size());
+  EXPECT_EQ(unknown.columns.cols(), 0);
+  EXPECT_THAT(unknown.untried,
+              testing::ElementsAre("bar: there are too few frames after the start of the motion"));
+}
 
 }  // namespace
 }  // namespace lacuna

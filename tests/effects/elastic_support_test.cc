@@ -12,6 +12,11 @@
 namespace lacuna {
 namespace {
 
+const Eigen::Vector3d kSize(0.03, 0.02, 0.04);  // m
+constexpr double kLowerFace = 600e-6;           // m²
+
+Body Block(int order = 1) { return MakeBody(BoxMesh({0, 0, 0}, kSize, {3, 2, 4}, order), 1000); }
+
 TEST(ElasticSupport, PassesTheEffectChecks) {
   // A part that does not fade has no place.
   CheckEffect(MakeEffect("elastic_support", {{"modulus", 1e5}}).get(),
@@ -39,51 +44,42 @@ TEST(ElasticSupport, PassesTheEffectChecksForAFadingPart) {
                   .get());
 }
 
+// Displaces a block as a whole and expects that a bed of 0.1 MPa/m holds the nodes of the lower
+// face alone, and pulls them back as a bed under this area, m², does.
+void ExpectPullOnLowerFace(const Effect& support, int order, double area) {
+  const Body body = Block(order);
+  const Eigen::Vector3d shift(0.001, 0, -0.002);
+  const Eigen::VectorXd position =
+      body.mesh.nodes.reshaped() + shift.replicate(body.NodeCount(), 1);
+  const Eigen::Matrix3Xd force =
+      ForceAt(support, body, position, 0 * position).reshaped(3, body.NodeCount());
+  EXPECT_LT((force.rowwise().sum() + 1e5 * area * shift).norm(), 1e-13);
+  for (int i = 0; i < body.NodeCount(); ++i) {
+    if (body.mesh.nodes(2, i) > 1e-3) {
+      EXPECT_EQ(force.col(i).norm(), 0);
+    }
+  }
+}
+
 TEST(ElasticSupport, PullsBackInProportionToArea) {
   // The area of the lower face and half of the lowest row of triangles of the sides, which is 10 mm
   // high for linear and 5 mm for quadratic elements.
   const auto support = MakeEffect("elastic_support", {{"modulus", 1e5}, {"normal_z", -1}});
-  for (const int order : {1, 2}) {
-    const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}, order), 1000);
-    Eigen::VectorXd position = body.mesh.nodes.reshaped();
-    const Eigen::Vector3d shift(0.001, 0, -0.002);
-    position += shift.replicate(body.NodeCount(), 1);
-    const Eigen::Matrix3Xd force =
-        ForceAt(*support, body, position, 0 * position).reshaped(3, body.NodeCount());
-    const double area = 600e-6 + 0.5 * 0.1 * (0.01 / order);
-    EXPECT_LT((force.rowwise().sum() + 1e5 * area * shift).norm(), 1e-13);
-    for (int i = 0; i < body.NodeCount(); ++i) {
-      if (body.mesh.nodes(2, i) > 1e-3) {
-        EXPECT_EQ(force.col(i).norm(), 0);
-      }
-    }
-  }
+  for (const int order : {1, 2})
+    ExpectPullOnLowerFace(*support, order, kLowerFace + 0.5 * 0.1 * (0.01 / order));
 }
 
 TEST(ElasticSupport, LiesAgainstOneSideOnly) {
   // The forces on the lower face alone: the sides, at right angles to it, take no part, whatever
   // the size of their triangles.
   const auto support = MakeEffect("elastic_support", {{"modulus", 1e5}, {"side_z", -2}});
-  for (const int order : {1, 2}) {
-    const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}, order), 1000);
-    Eigen::VectorXd position = body.mesh.nodes.reshaped();
-    const Eigen::Vector3d shift(0.001, 0, -0.002);
-    position += shift.replicate(body.NodeCount(), 1);
-    const Eigen::Matrix3Xd force =
-        ForceAt(*support, body, position, 0 * position).reshaped(3, body.NodeCount());
-    EXPECT_LT((force.rowwise().sum() + 1e5 * 600e-6 * shift).norm(), 1e-13);
-    for (int i = 0; i < body.NodeCount(); ++i) {
-      if (body.mesh.nodes(2, i) > 1e-3) {
-        EXPECT_EQ(force.col(i).norm(), 0);
-      }
-    }
-  }
+  for (const int order : {1, 2}) ExpectPullOnLowerFace(*support, order, kLowerFace);
 }
 
 // A face that is turned by 20° belongs to the side, one that is turned by 70° to the next one;
 // where a face is turned by 45°, two sides at right angles share it.
 TEST(ElasticSupport, LiesAgainstTheSideThatFacesIt) {
-  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}), 1000);
+  const Body body = Block();
   const Eigen::VectorXd position = body.mesh.nodes.reshaped().array() + 0.001;
   const auto total = [&](double degrees) {
     const double angle = degrees * std::numbers::pi / 180;
@@ -92,17 +88,17 @@ TEST(ElasticSupport, LiesAgainstTheSideThatFacesIt) {
                    {{"modulus", 1e5}, {"side_x", std::sin(angle)}, {"side_z", std::cos(angle)}});
     return -ForceAt(*support, body, position, 0 * position).sum() / (3 * 1e5 * 0.001);  // m²
   };
-  constexpr double kTop = 600e-6, kEnd = 800e-6;  // m²
-  EXPECT_NEAR(total(20), kTop, 1e-12);
+  constexpr double kUpperFace = kLowerFace, kEnd = 800e-6;  // m²
+  EXPECT_NEAR(total(20), kUpperFace, 1e-12);
   EXPECT_NEAR(total(70), kEnd, 1e-12);
-  EXPECT_NEAR(total(45), 0.5 * (kTop + kEnd), 1e-12);
+  EXPECT_NEAR(total(45), 0.5 * (kUpperFace + kEnd), 1e-12);
 }
 
 TEST(ElasticSupport, FadesWithDistance) {
   const auto support =
       MakeEffect("elastic_support", {{"modulus", 1e5}, {"point_x", 0.03}, {"radius", 0.01}});
   const auto whole = MakeEffect("elastic_support", {{"modulus", 1e5}});
-  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}), 1000);
+  const Body body = Block();
   const Eigen::VectorXd position = body.mesh.nodes.reshaped().array() + 0.001;
   const Eigen::VectorXd faded = ForceAt(*support, body, position, 0 * position);
   const Eigen::VectorXd full = ForceAt(*whole, body, position, 0 * position);
@@ -116,8 +112,7 @@ TEST(ElasticSupport, FadesWithDistance) {
 // A block that only a bed supports sinks until k A u = m g.
 TEST(ElasticSupport, CarriesTheWeight) {
   constexpr double kModulus = 1e6, kGravity = 9.81;
-  const Eigen::Vector3d size(0.03, 0.02, 0.04);
-  const Model model{std::make_shared<Body>(MakeBody(BoxMesh({0, 0, 0}, size, {3, 2, 4}), 1000)),
+  const Model model{std::make_shared<Body>(Block()),
                     {MakeEffect("linear", {{"young_modulus", 1e9}, {"poisson_ratio", 0}}),
                      MakeEffect("gravity", {{"acceleration_z", -kGravity}}),
                      MakeEffect("elastic_support", {{"modulus", kModulus}})},
@@ -125,8 +120,9 @@ TEST(ElasticSupport, CarriesTheWeight) {
   MotionHistory history = RestHistory(model);
   const StepSummary summary = Stepper(model, {}).Equilibrium({}, &history);
   ASSERT_TRUE(summary.IsUsable()) << summary.message;
-  const double surface = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  const double sunk = 1000 * size.prod() * kGravity / (kModulus * surface);
+  const double surface =
+      2 * (kSize.x() * kSize.y() + kSize.y() * kSize.z() + kSize.z() * kSize.x());
+  const double sunk = 1000 * kSize.prod() * kGravity / (kModulus * surface);
   const Eigen::Matrix3Xd shift =
       history.position.reshaped(3, model.body->NodeCount()) - model.body->mesh.nodes;
   // The strain of the block moves its nodes by up to ρ g h²/(2E) = 8e-9 m, compared with 4.5e-5 m.
@@ -148,7 +144,7 @@ TEST(ElasticSupport, IsReadFromYamlAndRefusesAnEmptyPart) {
   EXPECT_LT((support->Parameters() - expected).norm(), 1e-9);
   EXPECT_THROW(MakeEffect(items[1]), InputError);
 
-  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}), 1000);
+  const Body body = Block();
   const Eigen::VectorXd rest = body.mesh.nodes.reshaped();
   EXPECT_THROW(ForceAt(*support, body, rest, 0 * rest), InputError);
 }

@@ -62,7 +62,7 @@ TEST(ExpressionForce, PassesTheEffectChecks) {
                   .get(),
               {.depends_on_velocity = true});
   CheckEffect(MakeLaw("mass", "[k*X, k*cos(3*t), 0]", "3 1/s^2").get(),
-              {.depends_on_position = false});
+              {.depends_on_position = false, .has_known_energy = false});
 }
 
 TEST(ExpressionForce, HasACardOfItsOwn) {

@@ -8,6 +8,8 @@
 
 #include "exchange/cantilever.h"
 #include "exchange/feb_rules.h"
+#include "exchange/missing_parts.h"
+#include "support/replace_in_file.h"
 
 namespace lacuna {
 namespace {
@@ -16,12 +18,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-std::vector<std::string> MissingParts(const PortableModel& model) {
-  std::vector<std::string> names;
-  for (const Counterpart& part : Missing(FebCounterparts(model))) names.push_back(part.part);
-  return names;
-}
 
 Cantilever Bar() {
   Cantilever bar("st_venant_kirchhoff", {2, 1, 1}, 2);
@@ -66,7 +62,8 @@ TEST(FebWriter, NamesWhatHasNoCounterpart) {
         MakeEffect("viscoelastic_branch",
                    {{"modulus", 5e4}, {"relaxation_time", 0.04}, {"poisson_ratio", poisson}}));
   const PortableModel model = bar.Describe();
-  EXPECT_THAT(MissingParts(model), ElementsAre("mass_damping", "viscoelastic_branch"));
+  EXPECT_THAT(MissingParts(FebCounterparts(model)),
+              ElementsAre("mass_damping", "viscoelastic_branch"));
   // g = m/E; the first step lasts a thousand relaxation times.
   EXPECT_THAT(FebText(model), HasSubstr("<g1>0.5</g1><t1>0.04</t1>\n<elastic type=\"isotropic"));
   EXPECT_THAT(FebText(model), HasSubstr("<pt>40,1</pt>"));
@@ -80,7 +77,7 @@ TEST(FebWriter, NamesTheBranchesThatAreTooMany) {
         MakeEffect("viscoelastic_branch",
                    {{"modulus", 1e4 * k}, {"relaxation_time", 0.01 * k}, {"poisson_ratio", 0.4}}));
   const PortableModel model = bar.Describe();
-  EXPECT_THAT(MissingParts(model), ElementsAre("viscoelastic_branch"));
+  EXPECT_THAT(MissingParts(FebCounterparts(model)), ElementsAre("viscoelastic_branch"));
   EXPECT_EQ(FebCounterparts(model).at(7).kind, Counterpart::Kind::kConverted);  // the sixth
   EXPECT_EQ(FebCounterparts(model).at(8).kind, Counterpart::Kind::kNone);
   EXPECT_THAT(FebText(model), HasSubstr("<g6>0.6</g6>"));
@@ -130,10 +127,7 @@ TEST(FebRules, FindWhatIsBroken) {
       {"<analysis>STATIC", "<analysis>Static"},
       {"<node lid=\"1\">", "<node lid=\"2\">"}};
   for (const auto& [from, to] : breaks) {
-    std::string text = good;
-    ASSERT_NE(text.find(from), std::string::npos) << from;
-    text.replace(text.find(from), from.size(), to);
-    EXPECT_THAT(FebFaults(text), Not(IsEmpty())) << to;
+    EXPECT_THAT(FebFaults(WithReplacements(good, {{from, to}})), Not(IsEmpty())) << to;
   }
 }
 

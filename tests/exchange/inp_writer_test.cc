@@ -13,6 +13,7 @@
 #include "exchange/described_run.h"
 #include "exchange/export_format.h"
 #include "exchange/inp_reader.h"
+#include "exchange/missing_parts.h"
 #include "geometry/shape_functions.h"
 #include "support/temporary_folder.h"
 
@@ -24,13 +25,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-std::vector<std::string> MissingParts(const PortableModel& model, InpDialect dialect) {
-  std::vector<std::string> names;
-  for (const Counterpart& part : Missing(InpCounterparts(model, dialect)))
-    names.push_back(part.part);
-  return names;
-}
 
 ImportedModel WrittenAndRead(const PortableModel& model, InpDialect dialect) {
   TemporaryFolder folder;
@@ -88,9 +82,10 @@ TEST(InpWriter, NamesWhatHasNoCounterpart) {
   bar.model.effects.push_back(
       MakeEffect("viscoelastic_branch",
                  {{"modulus", 3e4}, {"relaxation_time", 0.04}, {"poisson_ratio", 0.4}}));
-  EXPECT_THAT(MissingParts(bar.Describe(), InpDialect::kCalculix),
+  EXPECT_THAT(MissingParts(InpCounterparts(bar.Describe(), InpDialect::kCalculix)),
               ElementsAre("pressure", "viscoelastic_branch"));
-  EXPECT_THAT(MissingParts(bar.Describe(), InpDialect::kAbaqus), ElementsAre("pressure"));
+  EXPECT_THAT(MissingParts(InpCounterparts(bar.Describe(), InpDialect::kAbaqus)),
+              ElementsAre("pressure"));
   const std::string text = InpText(bar.Describe(), InpDialect::kCalculix);
   EXPECT_THAT(text, HasSubstr("** pressure: none: "));
   EXPECT_THAT(text, HasSubstr("*DAMPING, ALPHA=2, BETA=0\n"));
@@ -100,13 +95,13 @@ TEST(InpWriter, RefusesDampingThatIsNotProportionalToTheStiffness) {
   Cantilever bar("corotational", {2, 1, 1}, 1);
   bar.model.effects.push_back(MakeEffect(
       "stiffness_damping", {{"beta", 0.01}, {"young_modulus", 2e5}, {"poisson_ratio", 0.4}}));
-  EXPECT_THAT(MissingParts(bar.Describe(), InpDialect::kCalculix), IsEmpty());
+  EXPECT_THAT(MissingParts(InpCounterparts(bar.Describe(), InpDialect::kCalculix)), IsEmpty());
   // β E_damping/E = 0.01 · 2
   EXPECT_THAT(InpText(bar.Describe(), InpDialect::kCalculix),
               HasSubstr("*DAMPING, ALPHA=0, BETA=0.02\n"));
   bar.model.effects.back() = MakeEffect(
       "stiffness_damping", {{"beta", 0.01}, {"young_modulus", 2e5}, {"poisson_ratio", 0.3}});
-  EXPECT_THAT(MissingParts(bar.Describe(), InpDialect::kCalculix),
+  EXPECT_THAT(MissingParts(InpCounterparts(bar.Describe(), InpDialect::kCalculix)),
               ElementsAre("stiffness_damping"));
   EXPECT_THAT(InpText(bar.Describe(), InpDialect::kCalculix), Not(HasSubstr("*DAMPING, ALPHA")));
 }
@@ -121,7 +116,7 @@ TEST(InpWriter, HasNoDampingInAQuasiStaticMotion) {
   bar.options.step.scheme = TimeScheme::kQuasiStatic;
   for (const InpDialect dialect :
        {InpDialect::kCalculix, InpDialect::kCalculixPointMasses, InpDialect::kAbaqus}) {
-    EXPECT_THAT(MissingParts(bar.Describe(), dialect),
+    EXPECT_THAT(MissingParts(InpCounterparts(bar.Describe(), dialect)),
                 ElementsAre("mass_damping", "stiffness_damping"));
     EXPECT_THAT(InpText(bar.Describe(), dialect), Not(HasSubstr("*DAMPING, ALPHA=")));
   }

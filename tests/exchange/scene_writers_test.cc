@@ -17,9 +17,11 @@
 
 #include "core/error.h"
 #include "exchange/cantilever.h"
+#include "exchange/missing_parts.h"
 #include "exchange/usd_layer.h"
 #include "exchange/usd_rules.h"
 #include "exchange/xml_element.h"
+#include "support/replace_in_file.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -29,12 +31,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-
-std::vector<std::string> Names(const Counterparts& parts) {
-  std::vector<std::string> names;
-  for (const Counterpart& part : Missing(parts)) names.push_back(part.part);
-  return names;
-}
 
 Cantilever Pulled(int order) {
   Cantilever bar("st_venant_kirchhoff", {2, 1, 1}, order);
@@ -60,9 +56,9 @@ TEST(WithLinearElements, KeepsCornersMassAndLoad) {
 }
 
 TEST(SofaWriter, WritesTheLawAndNamesWhatIsMissing) {
-  EXPECT_THAT(Names(SofaCounterparts(Pulled(1).Describe())),
+  EXPECT_THAT(MissingParts(SofaCounterparts(Pulled(1).Describe())),
               ElementsAre("equilibrium at the start"));
-  EXPECT_THAT(Names(SofaCounterparts(Pulled(2).Describe())),
+  EXPECT_THAT(MissingParts(SofaCounterparts(Pulled(2).Describe())),
               ElementsAre("quadratic elements", "equilibrium at the start"));
   const std::string text = SofaText(Pulled(1).Describe());
   // μ = 1e5/2.8, λ = 1e5·0.4/(1.4·0.2)
@@ -144,7 +140,7 @@ TEST(SofaWriter, WritesValidPython) {
 }
 
 TEST(MujocoWriter, PinsTheClampAndNamesWhatIsMissing) {
-  EXPECT_THAT(Names(MujocoCounterparts(Pulled(1).Describe())),
+  EXPECT_THAT(MissingParts(MujocoCounterparts(Pulled(1).Describe())),
               ElementsAre("mass_damping", "force pull", "equilibrium at the start"));
   const std::string text = MujocoText(Pulled(2).Describe());
   EXPECT_THAT(text, HasSubstr("<!-- clamp -->\n      <pin id=\"0 3 6 9\"/>"));
@@ -245,10 +241,8 @@ TEST(UsdRules, FindWhatIsBroken) {
       {"            0.05: ", "            0: "},
       {"uniform token[] xformOpOrder = [\"xformOp:transform\"]", ""}};
   for (const auto& [from, to] : breaks) {
-    std::string text = good;
-    ASSERT_NE(text.find(from), std::string::npos) << from;
-    text.replace(text.find(from), from.size(), to);
-    EXPECT_THAT(UsdFaults(text), Not(IsEmpty())) << from << " to " << to;
+    EXPECT_THAT(UsdFaults(WithReplacements(good, {{from, to}})), Not(IsEmpty()))
+        << from << " to " << to;
   }
 }
 
@@ -273,7 +267,7 @@ TEST(UsdWriter, WritesMeshMaterialAndScene) {
   EXPECT_THAT(clamp.Find("indices")->value.Numbers(), ElementsAre(0, 3, 6, 9));
   EXPECT_EQ(clamp.metadata.at("displayName").text, "clamp");
   EXPECT_EQ(layer.Find("/lacuna")->Find("lacuna:effect1:young_modulus")->value.number, 1e5);
-  EXPECT_THAT(Names(UsdCounterparts(model)),
+  EXPECT_THAT(MissingParts(UsdCounterparts(model)),
               ElementsAre("mass_damping", "force pull", "equilibrium at the start"));
 }
 
@@ -321,7 +315,7 @@ TEST(UsdWriter, NamesMotionsThatAreNotRigid) {
   bar.model.grips[1].motion = [tip](double time) -> Eigen::Matrix3Xd { return (1 + time) * tip; };
   bar.model.grips[2].axes = AxisSet::Of(1);
   const PortableModel model = bar.Describe();
-  EXPECT_THAT(Names(UsdCounterparts(model)),
+  EXPECT_THAT(MissingParts(UsdCounterparts(model)),
               ElementsAre("grip turned", "grip moved", "force weight", "force pull", "hold",
                           "equilibrium at the start"));
   EXPECT_THAT(UsdFaults(UsdText(model)), IsEmpty());
@@ -350,9 +344,9 @@ TEST(SceneWriters, SayThatTheTimeSchemeIsAnother) {
 TEST(SceneWriters, NameTheHoldThatTheyLose) {
   for (const int order : {1, 2}) {
     const PortableModel model = LoadedCantilever("linear", order).Describe();
-    EXPECT_THAT(Names(SofaCounterparts(model)), testing::Contains("hold"));
-    EXPECT_THAT(Names(MujocoCounterparts(model)), testing::Contains("hold"));
-    EXPECT_THAT(Names(UsdCounterparts(model)), testing::Contains("hold"));
+    EXPECT_THAT(MissingParts(SofaCounterparts(model)), testing::Contains("hold"));
+    EXPECT_THAT(MissingParts(MujocoCounterparts(model)), testing::Contains("hold"));
+    EXPECT_THAT(MissingParts(UsdCounterparts(model)), testing::Contains("hold"));
   }
 }
 
@@ -364,7 +358,7 @@ TEST(SceneWriters, HoldAlongSomeAxesWhereTheyCan) {
   EXPECT_THAT(SofaText(model),
               HasSubstr("'PartialFixedProjectiveConstraint', indices=[0, 3, 6, 9],\n"
                         "                   fixedDirections=[1, 0, 0])"));
-  EXPECT_THAT(Names(MujocoCounterparts(model)), testing::Contains("grip clamp"));
+  EXPECT_THAT(MissingParts(MujocoCounterparts(model)), testing::Contains("grip clamp"));
   EXPECT_THAT(MujocoText(model), Not(HasSubstr("<pin")));
 }
 

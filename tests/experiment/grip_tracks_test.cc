@@ -5,6 +5,9 @@
 
 #include <fstream>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "calibration/calibration_problem.h"
 #include "core/error.h"
@@ -70,7 +73,7 @@ TEST_F(CarriedByMarkers, MovesAsTheyDo) {
   EXPECT_LT((at_middle_ - motion_ * rest_).norm(), 1e-12);
 }
 
-// A jump of the velocity would be a shock in each frame.
+// A jump of the velocity would be a shock in each frame, the last one included.
 TEST_F(CarriedByMarkers, PassesAFrameWithoutAJumpOfItsVelocity) {
   const Eigen::Vector3d shift(0.001, 0.002, -0.001);
   Follow({"a", "b", "c", "d"}, recording_.markers.places.colwise() + shift);
@@ -81,6 +84,34 @@ TEST_F(CarriedByMarkers, PassesAFrameWithoutAJumpOfItsVelocity) {
     const Eigen::Matrix3Xd behind = (motion(frame + kLittle) - motion(frame)) / kLittle;
     ASSERT_GT(before.norm(), 0.001);
     EXPECT_LT((behind - before).norm(), 1e-4 * before.norm()) << frame;
+  }
+}
+
+// A grip that is shifted by 0, 1 and 3 units at 0, 1 and 2 s has the velocities 1, 1.5 and 2 units
+// per s there. At 1.5 s it is at 2 − 0.5 / 8 units, and at 2.5 s as far on the other side of 3.
+TEST_F(CarriedByMarkers, GoesOnAfterTheLastFrameLikeAGripOnAPathAfterItsLastRow) {
+  const Eigen::Vector3d unit(0.001, 0.002, -0.001);
+  motion_ = Eigen::Translation3d(3 * unit);
+  Follow({"a", "b", "c", "d"}, recording_.markers.places.colwise() + unit);
+
+  Recording on_path;
+  on_path.times = recording_.times;
+  RecordedGrip grip;
+  grip.region = recording_.object.grips.front().region;
+  grip.motion = GripMotion::kGiven;
+  grip.times = Eigen::Vector3d(0, 1, 2);
+  grip.displacements = unit * Eigen::RowVector3d(0, 1, 3);
+  on_path.object.grips = {grip};
+  Model model;
+  model.body = model_.body;
+  const GripTracks tracks(on_path, mesh_, &model);
+
+  const std::vector<std::pair<double, double>> expected = {{1.5, 1.9375}, {2, 3}, {2.5, 4.0625},
+                                                           {3, 5},        {4, 6}, {9, 6}};
+  for (const auto& [time, units] : expected) {
+    const Eigen::Matrix3Xd moved = rest_.colwise() + units * unit;
+    EXPECT_LT((model_.grips.front().motion(time) - moved).norm(), 1e-12) << time;
+    EXPECT_LT((model.grips.front().motion(time) - moved).norm(), 1e-12) << time;
   }
 }
 
@@ -161,7 +192,7 @@ TEST(RecordedGrips, OnAPathCountFromTheTimeAtWhichTheBodyIsUndeformed) {
   constexpr double kLittle = 1e-6;  // s
   const Eigen::Matrix3Xd before = (held.motion(2) - held.motion(2 - kLittle)) / kLittle;
   const Eigen::Matrix3Xd behind = (held.motion(2 + kLittle) - held.motion(2)) / kLittle;
-  EXPECT_LT((behind - before).norm(), 1e-4 * before.norm()) << "it goes on behind its last row";
+  EXPECT_LT((behind - before).norm(), 1e-4 * before.norm()) << "it goes on after its last row";
 }
 
 TEST(RecordedGrips, AreRefusedWhereTheLastFrameDoesNotShowThem) {

@@ -51,7 +51,12 @@ TEST_F(HeldParts, WhatContradictsIsNamed) {
       << "along different axes";
   EXPECT_THAT(ErrorOf({Below("clamp", 0, 0, AxisSet::All()), Below("line", 0, 0, AxisSet::Of(1))}),
               HasSubstr("\"line\": other regions hold all its nodes"));
-  EXPECT_THAT(ErrorOf({Below("all", 0, 1, AxisSet::All())}), HasSubstr("holds the whole object"));
+  EXPECT_THAT(
+      ErrorOf({Below("all", 0, 1, AxisSet::All())}),
+      HasSubstr("\"all\" holds all 27 nodes of the body, so that nothing can move (a half_space"));
+  EXPECT_THAT(ErrorOf({Below("x and y", 0, 1, AxisSet::Of(0) | AxisSet::Of(1)),
+                       Below("z", 0, 1, AxisSet::Of(2))}),
+              HasSubstr("\"z\" and those before it hold all 27 nodes of the body"));
   EXPECT_EQ(ErrorOf({Below("all", 0, 1, AxisSet::Of(0) | AxisSet::Of(1))}), "") << "z is free";
 }
 

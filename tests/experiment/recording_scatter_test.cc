@@ -111,7 +111,7 @@ TEST_F(RecordingScatterTest, NoiseThatIsStatedTooSmallIsDoubtedAndALargeOneNoted
   EXPECT_THAT(
       ExamineRecording(scans, {0.05e-3, "scan.noise"}).findings,
       ElementsAre(AllOf(HasSubstr("times the stated `scan: {noise: 0.05 mm}`"),
-                        HasSubstr("Write `scan: {noise: 0."), HasSubstr("or leave the key out"))));
+                        HasSubstr("Write `scan: {noise: 0."), HasSubstr("or omit the key"))));
   const ExaminedRecording noted = ExamineRecording(scans, {2e-3, "fit.noise"});
   EXPECT_THAT(noted.findings, IsEmpty());
   EXPECT_THAT(noted.scatter, AllOf(HasSubstr("the points scatter by 0."),

@@ -203,6 +203,20 @@ TEST(Calibration, ReportsASolutionThatCannotBeLinearised) {
   EXPECT_THAT(found.message, testing::HasSubstr("not definite"));
 }
 
+// There is nothing to estimate; the prediction is judged all the same.
+TEST(Calibration, HasASolutionWithoutParameters) {
+  const auto predict_as = [](bool usable) {
+    return [usable](const Eigen::VectorXd&, bool) {
+      return ResidualEvaluation{usable, "", Eigen::VectorXd::Constant(4, 3), {}, {}};
+    };
+  };
+  const Calibration found = Calibrate({}, predict_as(true));
+  EXPECT_TRUE(found.HasSolution());
+  EXPECT_TRUE(found.estimates.empty());
+  EXPECT_DOUBLE_EQ(found.rms, 3);
+  EXPECT_FALSE(Calibrate({}, predict_as(false)).HasSolution());
+}
+
 TEST(Calibration, ReportsAFailedPrediction) {
   const auto fails = [](const Eigen::VectorXd&, bool) {
     return ResidualEvaluation{false, "element 3 is inverted", {}, {}};

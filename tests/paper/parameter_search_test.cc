@@ -12,6 +12,7 @@
 #include "paper/evaluation_record.h"
 #include "paper/reduced_bend.h"
 #include "reconstruction/reconstruction_study.h"
+#include "support/replace_in_file.h"
 #include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 
@@ -32,14 +33,8 @@ poisson_ratio: {start: 0.3, lower: 0.1, upper: 0.45}
 evaluations: 10
 )";
 
-class ParameterSearchTest : public testing::Test {
+class ParameterSearchTest : public ReducedBendTest {
  protected:
-  static void SetUpTestSuite() { scans_ = new Table1Scans(LoadReducedBend()); }
-  static void TearDownTestSuite() { delete scans_; }
-
-  static ParameterObjective Problem() {
-    return {scans_->study, scans_->states, scans_->tracked, true, false, 0};
-  }
   static ParameterSearchSettings Settings() {
     return ReadParameterSearch(Config::Parse(kSearch, "search.yaml"));
   }
@@ -48,10 +43,7 @@ class ParameterSearchTest : public testing::Test {
     SilentProgress progress;
     return RunParameterSearch(Problem(), settings, folder, "reduced", &progress);
   }
-
-  static Table1Scans* scans_;
 };
-Table1Scans* ParameterSearchTest::scans_ = nullptr;
 
 // The first `count` lines of a file, and a part of the next one.
 void CutAfter(const fs::path& file, int count) {
@@ -108,10 +100,13 @@ TEST_F(ParameterSearchTest, TheSumFollowsTheNumberOfPointsAndTheMeanDoesNot) {
 }
 
 TEST_F(ParameterSearchTest, ARefusedMeshIsAFailedEvaluation) {
-  std::vector<FrameState> states = scans_->states;
+  std::vector<FrameState> states = Scans().states;
   TriMesh& surface = states.front().surface;
   surface.triangles.conservativeResize(3, surface.triangles.cols() - 1);
-  const ParameterObjective problem{scans_->study, states, scans_->tracked, false, false, 0};
+  const ParameterObjective problem{.study = Scans().study,
+                                   .states = states,
+                                   .tracked = Scans().tracked,
+                                   .remesh_surface = false};
   const ObjectiveEvaluation failed = EvaluateObjective(problem, {2.0, 3e-7, 1e5, 0.35});
   EXPECT_FALSE(failed.usable);
   EXPECT_NE(failed.failure.find("cannot be meshed"), std::string::npos) << failed.failure;
@@ -158,29 +153,22 @@ void ExpectSlopes(const ParameterObjective& problem, double tolerance) {
   }
 }
 
-ReconstructionStudy WithForces(const std::string& forces) {
-  std::string text = kReducedBend;
-  const size_t begin = text.find("{model: smooth");
-  text.replace(begin, text.find('\n', begin) - begin, forces);
-  return ReadReconstruction(
-      Config::Parse(text, "reduced.yaml"),
-      LoadRecording(fs::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend"));
-}
-
 TEST_F(ParameterSearchTest, TheDerivativesByTheModuliAgreeWithDifferences) {
   // A body that bends by its weight, in a recording without: D grows as it gets softer.
-  const ReconstructionStudy study =
-      WithForces("{model: none}\neffects: [{type: gravity, acceleration: [0, 0, -9.81 m/s^2]}]");
-  ParameterObjective problem{study, scans_->states, scans_->tracked, true, false, 0};
+  const std::string text = WithReplacements(
+      kReducedBend,
+      {{"forces: {model: smooth, length: 60 mm, traction_scale: 0.1 kPa}",
+        "forces: {model: none}\neffects: [{type: gravity, acceleration: [0, 0, -9.81 m/s^2]}]"}});
+  const ReconstructionStudy study = ReadReconstruction(Config::Parse(text, "reduced.yaml"),
+                                                       LoadRecording(ReducedBendRecording()));
+  ParameterObjective problem = Problem(study);
   problem.slopes = true;
   // The curvature of D over a tenth of y.
   ExpectSlopes(problem, 0.1);
 }
 
 TEST_F(ParameterSearchTest, WhereForcesAreFittedThereAreNoDerivatives) {
-  const ReconstructionStudy study =
-      WithForces("{model: smooth, length: 60 mm, traction_scale: 0.1 kPa}");
-  ParameterObjective problem{study, scans_->states, scans_->tracked, true, false, 0};
+  ParameterObjective problem = Problem();
   EXPECT_FALSE(CanDifferentiate(problem));
   problem.slopes = true;
   const ObjectiveEvaluation evaluation = EvaluateObjective(problem, {2.0, 3e-7, 1e5, 0.35});
@@ -279,21 +267,20 @@ TEST(ParameterSearchSettingsTest, AKeyThatTheMethodIgnoresIsRefused) {
 }
 
 TEST(ParameterSearchSettingsTest, BoundsAreRefusedWhereTheyAreWrong) {
-  std::string text = kSearch;
-  text.replace(text.find("lower: 0.01 MPa, "), 17, "");
-  EXPECT_THROW(ReadParameterSearch(Config::Parse(text, "s.yaml")), InputError);
-  EXPECT_NO_THROW(ReadParameterSearch(Config::Parse(kSearch, "s.yaml")));
-  text = std::string(kSearch) + "method: nlopt_bobyqa\n";
-  text.replace(text.find(", lower: 0.1, upper: 0.45"), 25, "");
-  EXPECT_THROW(ReadParameterSearch(Config::Parse(text, "s.yaml")), InputError);  // one parameter
+  const auto read = [](const std::map<std::string, std::string>& replaced) {
+    ReadParameterSearch(Config::Parse(WithReplacements(kSearch, replaced), "s.yaml"));
+  };
+  EXPECT_NO_THROW(read({}));
+  EXPECT_THROW(read({{"lower: 0.01 MPa, ", ""}}), InputError);
+  // BOBYQA needs two parameters at least; here the modulus alone is searched.
+  EXPECT_THROW(read({{", lower: 0.1, upper: 0.45", ""},
+                     {"evaluations: 10\n", "evaluations: 10\nmethod: nlopt_bobyqa\n"}}),
+               InputError);
   // No tetrahedron's radius is so short beside its edges.
-  text = std::regex_replace(std::string(kSearch),
-                            std::regex("(radius_edge_ratio: \\{start: )[^,}]+"), "$011");
-  EXPECT_NE(text, kSearch);
-  EXPECT_THROW(ReadParameterSearch(Config::Parse(text, "s.yaml")), InputError);
-  text = kSearch;
-  text.replace(text.find("start: 3 MPa"), 12, "start: 30 MPa");
-  EXPECT_THROW(ReadParameterSearch(Config::Parse(text, "s.yaml")), InputError);
+  EXPECT_THROW(read({{"radius_edge_ratio: {start: 2.0}", "radius_edge_ratio: {start: 1}"}}),
+               InputError);
+  // A start above the upper bound.
+  EXPECT_THROW(read({{"start: 3 MPa", "start: 30 MPa"}}), InputError);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "paper/reduced_bend.h"
 
-#include <filesystem>
+#include <utility>
 
 #include "reconstruction/reconstruction_study.h"
 #include "reconstruction/recorded_states.h"
@@ -8,15 +8,25 @@
 
 namespace lacuna {
 
-Table1Scans LoadReducedBend() {
+std::filesystem::path ReducedBendRecording() {
+  return std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend";
+}
+
+std::unique_ptr<const Table1Scans> ReducedBendTest::scans_;
+
+void ReducedBendTest::SetUpTestSuite() {
   SilentProgress progress;
-  const std::filesystem::path bend =
-      std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend";
-  Table1Scans scans{
-      ReadReconstruction(Config::Parse(kReducedBend, "reduced.yaml"), LoadRecording(bend)), {}, {}};
+  Table1Scans scans{ReadReconstruction(Config::Parse(kReducedBend, "reduced.yaml"),
+                                       LoadRecording(ReducedBendRecording())),
+                    {},
+                    {}};
   scans.states = LoadFrameStates(scans.study, &progress);
   scans.tracked = TrackFrames(scans.study, scans.states, &progress);
-  return scans;
+  scans_ = std::make_unique<const Table1Scans>(std::move(scans));
+}
+
+ParameterObjective ReducedBendTest::Problem(const ReconstructionStudy& study) {
+  return {study, Scans().states, Scans().tracked};
 }
 
 }  // namespace lacuna

@@ -2,6 +2,12 @@
 #ifndef LACUNA_TESTS_PAPER_REDUCED_BEND_H_
 #define LACUNA_TESTS_PAPER_REDUCED_BEND_H_
 
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "paper/parameter_objective.h"
 #include "paper/table1_scans.h"
 
 namespace lacuna {
@@ -17,8 +23,24 @@ forces: {model: smooth, length: 60 mm, traction_scale: 0.1 kPa}
 fit: {noise: 0.3 mm, alignment_rounds: 1}
 )";
 
-// Its frames, cleaned, turned into surfaces and registered.
-Table1Scans LoadReducedBend();
+// The folder of its recording.
+std::filesystem::path ReducedBendRecording();
+
+// Tests on that experiment. Its frames are cleaned, turned into surfaces and registered once for
+// each test suite.
+class ReducedBendTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite();
+  static void TearDownTestSuite() { scans_.reset(); }
+
+  static const Table1Scans& Scans() { return *scans_; }
+  // The objective of a search in `study`, which must outlive it: that of the experiment, or one
+  // with the same frames.
+  static ParameterObjective Problem(const ReconstructionStudy& study = Scans().study);
+
+ private:
+  static std::unique_ptr<const Table1Scans> scans_;
+};
 
 }  // namespace lacuna
 

@@ -28,10 +28,10 @@ young_modulus: {start: 0.1 MPa}
 poisson_ratio: {start: 0.35}
 )";
 
-class Table1FiguresTest : public testing::Test {
+class Table1FiguresTest : public ReducedBendTest {
  protected:
   static void SetUpTestSuite() {
-    scans_ = new Table1Scans(LoadReducedBend());
+    ReducedBendTest::SetUpTestSuite();
     table1_ = new Table1Study;
     table1_->configurations.push_back({"all",
                                        Config::Parse(kReducedBend, "reduced.yaml"),
@@ -44,24 +44,19 @@ class Table1FiguresTest : public testing::Test {
         new Table1FigureSettings{{}, 3, {1.5, 3.0}, {5e-8, 3e-7}, {{1.1, 3.0}, 1, 0}, {1, 3}, {3}};
   }
   static void TearDownTestSuite() {
-    delete scans_;
     delete table1_;
     delete settings_;
-  }
-  static ParameterObjective Problem() {
-    return {scans_->study, scans_->states, scans_->tracked, true, false, 0};
+    ReducedBendTest::TearDownTestSuite();
   }
 
-  static Table1Scans* scans_;
   static Table1Study* table1_;
   static Table1FigureSettings* settings_;
 };
-Table1Scans* Table1FiguresTest::scans_ = nullptr;
 Table1Study* Table1FiguresTest::table1_ = nullptr;
 Table1FigureSettings* Table1FiguresTest::settings_ = nullptr;
 
 TEST_F(Table1FiguresTest, CloudIsSplitIntoKeptAndRemovedAndTheSurfaceIsNearTheTruth) {
-  const FigureContent figure = DrawCloudAndSurface(*scans_, *settings_);
+  const FigureContent figure = DrawCloudAndSurface(Scans(), *settings_);
   ASSERT_EQ(figure.picture.panels.size(), 2u);
   const std::vector<PanelPoints>& points = figure.picture.panels[0].points;
   ASSERT_EQ(points.size(), 2u);
@@ -73,7 +68,7 @@ TEST_F(Table1FiguresTest, CloudIsSplitIntoKeptAndRemovedAndTheSurfaceIsNearTheTr
 }
 
 TEST_F(Table1FiguresTest, ASmallerVGivesMoreTetrahedraAndEachMeshIsCutOpen) {
-  const FigureContent figure = DrawMeshes(*table1_, *scans_, *settings_);
+  const FigureContent figure = DrawMeshes(*table1_, Scans(), *settings_);
   ASSERT_EQ(figure.picture.panels.size(), 4u);
   for (const Panel& panel : figure.picture.panels)
     EXPECT_GT(panel.surfaces[1].mesh.triangles.cols(), 0) << panel.title;
@@ -86,7 +81,7 @@ TEST_F(Table1FiguresTest, ASmallerVGivesMoreTetrahedraAndEachMeshIsCutOpen) {
 
 // With S_0's own triangles and no other bound, q alone decides on the tetrahedra.
 TEST_F(Table1FiguresTest, QActsWhereTheSurfaceIsKeptAndVDoesNot) {
-  const FigureContent figure = DrawOwnSurfaceMeshes(*table1_, *scans_, *settings_);
+  const FigureContent figure = DrawOwnSurfaceMeshes(*table1_, Scans(), *settings_);
   ASSERT_EQ(figure.numbers.size(), 2u);
   const auto number = [&](size_t mesh, const char* name) {
     return figure.numbers[mesh].at(name).get<double>();
@@ -97,7 +92,7 @@ TEST_F(Table1FiguresTest, QActsWhereTheSurfaceIsKeptAndVDoesNot) {
 }
 
 TEST_F(Table1FiguresTest, ArrowsShowTheRegisteredDisplacement) {
-  const FigureContent figure = DrawBend(*table1_, *scans_, *settings_);
+  const FigureContent figure = DrawBend(*table1_, Scans(), *settings_);
   ASSERT_EQ(figure.picture.panels.size(), 4u);
   for (size_t k = 0; k < 2; ++k) {
     const PanelSurface& arrows = figure.picture.panels[k].surfaces[1];
@@ -112,7 +107,7 @@ TEST_F(Table1FiguresTest, ArrowsShowTheRegisteredDisplacement) {
 }
 
 TEST_F(Table1FiguresTest, AFrameWhoseRegistrationFailedHasNoDisplacement) {
-  Table1Scans scans = *scans_;
+  Table1Scans scans = Scans();
   scans.tracked.failures.at(3) = "no overlap";
   EXPECT_THAT([&] { DrawBend(*table1_, scans, *settings_); },
               ThrowsMessage<InputError>(HasSubstr("registration of frame 3 failed (no overlap)")));
@@ -120,7 +115,7 @@ TEST_F(Table1FiguresTest, AFrameWhoseRegistrationFailedHasNoDisplacement) {
 
 TEST_F(Table1FiguresTest, OptimaAreReadFromTheTableAndMeasureWhatItHas) {
   const TemporaryFolder folder;
-  EXPECT_THAT([&] { DrawAlignment(*table1_, *scans_, *settings_, folder / "."); },
+  EXPECT_THAT([&] { DrawAlignment(*table1_, Scans(), *settings_, folder / "."); },
               ThrowsMessage<InputError>(HasSubstr("run `lacuna table1` first")));
   const SearchedParameters optimum{2, 3e-7, 1e5, 0.35};
   const ObjectiveEvaluation found = EvaluateObjective(Problem(), optimum);
@@ -131,13 +126,13 @@ TEST_F(Table1FiguresTest, OptimaAreReadFromTheTableAndMeasureWhatItHas) {
       {"best", {{"parameters", ToJson(optimum)}, {"evaluation", ToJson(found)}}}};
   std::ofstream(folder / "table1.json")
       << nlohmann::json{{"searches", nlohmann::json::array({search})}};
-  EXPECT_THAT([&] { DrawAlignment(*table1_, *scans_, *settings_, folder / "."); },
+  EXPECT_THAT([&] { DrawAlignment(*table1_, Scans(), *settings_, folder / "."); },
               ThrowsMessage<InputError>(
                   AllOf(HasSubstr("another scene"), HasSubstr("with another `--output`"))));
   fs::create_directories(folder / "seed_1/recording");
   std::ofstream(folder / "seed_1/recording/a.ply") << "ply\n";
   MarkRecording(folder / "seed_1/recording", RecordingKey(*table1_, 1));
-  const FigureContent figure = DrawAlignment(*table1_, *scans_, *settings_, folder / ".");
+  const FigureContent figure = DrawAlignment(*table1_, Scans(), *settings_, folder / ".");
   ASSERT_EQ(figure.numbers.size(), 1u);
   EXPECT_EQ(figure.numbers[0].at("residual_per_point_m"), found.residual_per_point);
   ASSERT_EQ(figure.picture.panels.size(), 1u);
@@ -146,7 +141,7 @@ TEST_F(Table1FiguresTest, OptimaAreReadFromTheTableAndMeasureWhatItHas) {
   EXPECT_LT(distance.mean(), 1) << "mm; the body follows the scan";
 
   std::ofstream(folder / "seed_1/recording/a.ply") << "another\n";
-  EXPECT_THAT([&] { DrawAlignment(*table1_, *scans_, *settings_, folder / "."); },
+  EXPECT_THAT([&] { DrawAlignment(*table1_, Scans(), *settings_, folder / "."); },
               ThrowsMessage<InputError>(HasSubstr("was changed")));
 }
 

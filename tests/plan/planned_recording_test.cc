@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <map>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "plan/planned_bar.h"
@@ -15,6 +18,18 @@ namespace lacuna {
 namespace {
 
 using ::testing::HasSubstr;
+
+constexpr double kLastFrame = 0.01 * (kFrames - 1), kRowSpacing = 0.1 * kLastFrame;  // s
+
+// A clamp that moves at a steady velocity (m/s) along a path from 0 to `end` (s).
+RecordedGrip SteadyClamp(const Eigen::Vector3d& velocity, double end) {
+  RecordedGrip grip;
+  grip.region = {"clamp", HalfSpaceRegion{{0.002, 0, 0}, -Eigen::Vector3d::UnitX()}};
+  grip.motion = GripMotion::kGiven;
+  grip.times = Eigen::VectorXd::LinSpaced(11, 0, end);
+  grip.displacements = velocity * grip.times.transpose();
+  return grip;
+}
 
 class PlannedRecordingOfABar : public ::testing::Test {
  protected:
@@ -65,17 +80,10 @@ TEST_F(PlannedRecordingOfABar, LastsLongerWithTheSameSpacing) {
 TEST_F(PlannedRecordingOfABar, RestsInTheLastPoseAndKeepsTheLastForceWhereItLastsLonger) {
   RecordedObject& object = bar_.study.recordings[0].recording.object;
   object.fixed.clear();
-  const double last = 0.01 * (kFrames - 1), spacing = last / 10;
-  RecordedGrip grip;
-  grip.region = {"clamp", HalfSpaceRegion{{0.002, 0, 0}, -Eigen::Vector3d::UnitX()}};
-  grip.motion = GripMotion::kGiven;
-  grip.times = Eigen::VectorXd::LinSpaced(11, 0, last);
-  grip.displacements = Eigen::Matrix3Xd::Zero(3, 11);
-  grip.displacements.row(1) = 0.1 * grip.times.transpose();
-  object.grips = {grip};
+  object.grips = {SteadyClamp({0, 0.1, 0}, kLastFrame)};
   MeasuredForce force;
   force.name = "pull";
-  force.times = Eigen::Vector2d(0, last);
+  force.times = Eigen::Vector2d(0, kLastFrame);
   force.forces = Eigen::Matrix3Xd::Zero(3, 2);
   force.forces(2, 1) = 0.5;
   object.forces = {force};
@@ -85,11 +93,43 @@ TEST_F(PlannedRecordingOfABar, RestsInTheLastPoseAndKeepsTheLastForceWhereItLast
   const RecordedObject& made = planned.item.recording.object;
   const double end = planned.item.recording.times.back();
   for (int k = 0; k <= 50; ++k) {
-    const double time = last + spacing + k * (end - last - spacing) / 50;
-    EXPECT_NEAR(MotionAt(made.grips.at(0), time).translation().y(), 0.1 * last, 1e-12) << time;
+    const double rests = kLastFrame + kRowSpacing, time = rests + k * (end - rests) / 50;
+    EXPECT_NEAR(MotionAt(made.grips.at(0), time).translation().y(), 0.1 * kLastFrame, 1e-12)
+        << time;
   }
   EXPECT_EQ(made.forces.at(0).times[2], end);
   EXPECT_EQ(ForceAt(made.forces.at(0), end).z(), 0.5);
+}
+
+// Its poses are written anew, ten per frame: after one frame more they are all the same.
+TEST_F(PlannedRecordingOfABar, RestsInTheLastPoseOnATurnedFixtureToo) {
+  RecordedObject& object = bar_.study.recordings[0].recording.object;
+  object.fixed.clear();
+  object.grips = {SteadyClamp({0, 0.1, 0}, kLastFrame)};
+  Protocol protocol = Named("turned and longer");
+  protocol.duration = 2;
+  protocol.turn = 0.5 * std::numbers::pi * Eigen::Vector3d::UnitY();
+  const PlannedRecording planned = Plan(protocol);
+  const RecordedGrip& clamp = planned.item.recording.object.grips.at(0);
+  const Eigen::Isometry3d expected = planned.fixture * Eigen::Translation3d(0, 0.1 * kLastFrame, 0);
+  const double end = planned.item.recording.times.back();
+  for (int k = 0; k <= 50; ++k) {
+    const double rests = kLastFrame + kRowSpacing + 0.01, time = rests + k * (end - rests) / 50;
+    EXPECT_LT((MotionAt(clamp, time).matrix() - expected.matrix()).norm(), 1e-9) << time;
+  }
+}
+
+// Times of a file are rounded (TimeMargin()). A clamp that moves until the last frame is not to be
+// stopped there.
+TEST_F(PlannedRecordingOfABar, DoesNotStopAClampWhosePathCoversTheFramesButForRounding) {
+  RecordedObject& object = bar_.study.recordings[0].recording.object;
+  object.fixed.clear();
+  object.grips = {SteadyClamp({0, 0.1, 0}, kLastFrame - 1e-6)};
+  const RecordedGrip clamp = Plan(Named("again")).item.recording.object.grips.at(0);
+  for (const double before : {0.01, 0.001, 0.0})
+    EXPECT_NEAR(MotionAt(clamp, kLastFrame - before).translation().y(), 0.1 * (kLastFrame - before),
+                1e-12)
+        << before;
 }
 
 TEST_F(PlannedRecordingOfABar, TurnsTheClampAndTheHandButNotGravity) {
@@ -195,13 +235,16 @@ TEST_F(PlannedRecordingOfABar, SaysWhatCannotBeDone) {
   EXPECT_THAT(ErrorOf(pull), HasSubstr("nothing pulls"));
 }
 
+// A text of the bar's experiment, and what replaces it: the model has a plane of contact at this
+// height, too.
+std::map<std::string, std::string> TableAt(const std::string& height) {
+  const std::string damping = "  - {type: mass_damping, alpha: 1 1/s}\n";
+  const std::string contact = "  - {type: plane_contact, stiffness: 100 MPa/m, offset: ";
+  return {{damping, damping + contact + height + "}\n"}};
+}
+
 TEST(PlannedRecordingAboveATable, DoesNotMoveTheClampThroughIt) {
-  // A table 12 mm below the middle of the bar.
-  const std::map<std::string, std::string> with_table = {
-      {"  - {type: mass_damping, alpha: 1 1/s}\n",
-       "  - {type: mass_damping, alpha: 1 1/s}\n"
-       "  - {type: plane_contact, stiffness: 100 MPa/m, offset: -12 mm}\n"}};
-  const PlannedBar bar(with_table);
+  const PlannedBar bar(TableAt("-12 mm"));  // 2 mm below the bar
   Protocol protocol;
   protocol.name = "shaken";
   protocol.recording = bar.Name();
@@ -217,13 +260,23 @@ TEST(PlannedRecordingAboveATable, DoesNotMoveTheClampThroughIt) {
   }
 }
 
+// The clamp comes down to 0.5 mm above the table in the last frame that was recorded, and would
+// be in the table 0.1 s later if it went on.
+TEST(PlannedRecordingAboveATable, LetsTheClampRestAboveItWhereItLastsLonger) {
+  PlannedBar bar(TableAt("-12 mm"));
+  RecordedObject& object = bar.study.recordings[0].recording.object;
+  object.fixed.clear();
+  object.grips = {SteadyClamp({0, 0, -0.0015 / kLastFrame}, kLastFrame)};
+  Protocol protocol;
+  protocol.name = "longer";
+  protocol.recording = bar.Name();
+  protocol.duration = 2;
+  EXPECT_NO_THROW(PlanRecording(protocol, bar.study, bar.mesh));
+}
+
 // The lower edge of the clamp lies 1 mm behind the plane that the model has.
 TEST(PlannedRecordingAboveATable, LetsTheClampBeAsDeepAsItWasRecorded) {
-  const std::map<std::string, std::string> with_table = {
-      {"  - {type: mass_damping, alpha: 1 1/s}\n",
-       "  - {type: mass_damping, alpha: 1 1/s}\n"
-       "  - {type: plane_contact, stiffness: 100 MPa/m, offset: -9 mm}\n"}};
-  const PlannedBar bar(with_table);
+  const PlannedBar bar(TableAt("-9 mm"));
   Protocol protocol;
   protocol.name = "again";
   protocol.recording = bar.Name();

@@ -139,9 +139,64 @@ TEST(PlanReport, NamesTheSizesOfAPairWithTheirEffects) {
   EXPECT_THAT(text, HasSubstr("two effects at once count as not named"));
 }
 
+// Two rivals beside other hypotheses, and a recording that tells them apart.
+PlanRecord PlanAfter(const std::string& verdict) {
+  PlanRecord plan;
+  plan.verdict = verdict;
+  plan.no_effect = 0.91;
+  plan.rivals = {{"one", "the first loss", 0.6, 0.01, {"one"}, 0.03},
+                 {"two", "the second loss", 0.4, 0.01, {"two"}, 0.02}};
+  PlannedOutcome& outcome = plan.outcomes.emplace_back();
+  outcome.what = "\"bar\" once more";
+  outcome.named = {0.9, 0.8};
+  outcome.probability = 0.86;
+  return plan;
+}
+
+std::string OneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+TEST(PlanSummary, SaysThatNothingIsOpenAfterAdequate) {
+  PlanRecord plan = PlanAfter("adequate");
+  plan.also_left = {{"clock", "the clock", 0.06}};
+  const std::string text = OneLine(PlanSummary(plan));
+  EXPECT_THAT(text, ::testing::StartsWith(
+                        "Nothing is open: the recordings show no missing effect (probability that "
+                        "none is missing: 91 %). The plan only tells which recording would best "
+                        "show the first loss (3 %) and the second loss (2 %), if one of them were "
+                        "there."));
+  EXPECT_THAT(text, HasSubstr("The best recording: \"bar\" once more"));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("cannot tell apart")));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("the clock")));
+}
+
+TEST(PlanSummary, GivesTheProbabilitiesOfTheDiagnosis) {
+  EXPECT_THAT(OneLine(PlanSummary(PlanAfter("ambiguous {one, two}"))),
+              ::testing::StartsWith("The diagnosis cannot tell apart the first loss (3 %) and the "
+                                    "second loss (2 %). If one of them is missing, "));
+}
+
+TEST(PlanSummary, SaysFirstThatANuisanceIsMoreProbable) {
+  PlanRecord plan = PlanAfter("ambiguous {clock, one}");
+  plan.also_left = {{"mesh", "the mesh", 0.02}, {"clock", "the clock", 0.91}};
+  std::string text = OneLine(PlanSummary(plan));
+  EXPECT_THAT(text, ::testing::StartsWith(
+                        "The most probable explanation is the clock (91 %), which is no physical "
+                        "effect. A plan does not weigh it: the shares of right names hold only if "
+                        "an effect is what is missing. The diagnosis cannot"));
+  EXPECT_THAT(text, HasSubstr("could explain it, too (the mesh (2 %))"));
+  plan.also_left[1].probability = 0.03;  // no more than the first loss
+  text = OneLine(PlanSummary(plan));
+  EXPECT_THAT(text, ::testing::StartsWith("The diagnosis cannot"));
+  EXPECT_THAT(text, HasSubstr("too (the mesh (2 %), the clock (3 %))"));
+}
+
 TEST(PlanReport, HasNoTableWhereNoRecordingCanBeMade) {
   PlanRecord plan;
-  plan.rivals = {{"one", "the first loss", 0.6, 0.01}, {"two", "the second loss", 0.4, 0.01}};
+  plan.rivals = {{"one", "the first loss", 0.6, 0.01, {"one"}},
+                 {"two", "the second loss", 0.4, 0.01, {"two"}}};
   PlannedOutcome& outcome = plan.outcomes.emplace_back();
   outcome.name = "harder";
   outcome.message = "the bar leaves the room";
@@ -152,7 +207,8 @@ TEST(PlanReport, HasNoTableWhereNoRecordingCanBeMade) {
 // Two recordings of which neither separates the rivals.
 TEST(PlanSummary, NamesRivalsThatNoRecordingSeparates) {
   PlanRecord plan;
-  plan.rivals = {{"one", "the first loss", 0.6, 0.01}, {"two", "the second loss", 0.4, 0.01}};
+  plan.rivals = {{"one", "the first loss", 0.6, 0.01, {"one"}},
+                 {"two", "the second loss", 0.4, 0.01, {"two"}}};
   for (const double lambda : {3.25, 1.5}) {
     PlannedOutcome& outcome = plan.outcomes.emplace_back();
     outcome.what = "\"bar\" once more";

@@ -6,7 +6,6 @@
 
 #include "core/error.h"
 #include "prediction/predicted_body.h"
-#include "prediction/prediction_study_reader.h"
 #include "support/held_bar.h"
 #include "support/pulled_bar.h"
 #include "support/temporary_folder.h"
@@ -79,9 +78,8 @@ TEST_F(PlayingARecording, NeedsTheForceThatHolds) {
 
 // A bar that a jaw pulls, played with these load cells.
 PlayedRecording PlayPulledBar(const TemporaryFolder& folder, const std::string& cells) {
-  const PredictionStudy study = ReadPredictionStudy(
-      Config::Parse(PulledBarExperiment(folder.Path(), {{"    fit_until: 11.5 s\n", cells}}),
-                    (folder / "study.yaml").string()));
+  const PredictionStudy study =
+      ReadPulledBarStudy(folder.Path(), {{"    fit_until: 11.5 s\n", cells}});
   const TetMesh mesh = PulledBarMesh();
   const auto body = std::make_shared<const Body>(MakeBody(mesh, study.density));
   const RecordingModel model(study, study.recordings.front(), mesh, body, {});

@@ -48,6 +48,16 @@ TEST_F(ReadingAPredictionStudy, RefusesNothingToFit) {
   EXPECT_THAT(MessageOf(none), HasSubstr("recordings: is empty"));
 }
 
+// The normal of the clamp has the wrong sign: the bar is clamped but for its end.
+TEST_F(ReadingAPredictionStudy, RefusesAClampThatHoldsAllMarkers) {
+  EXPECT_THAT(MessageAfterInRecording({{"normal: [-1, 0, 0]", "normal: [1, 0, 0]"}}),
+              testing::AllOf(HasSubstr("recordings[0].recording: region \"clamp\" of"),
+                             HasSubstr("recording.yaml holds all 8 markers")));
+  EXPECT_EQ(
+      MessageAfterInRecording({{"normal: [-1, 0, 0]}", "normal: [1, 0, 0]}, directions: [x]"}}),
+      "nothing was refused");
+}
+
 TEST_F(ReadingAPredictionStudy, TakesEquilibria) {
   const std::string statics = "motion: {scheme: quasi_static}";
   EXPECT_THAT(MessageAfter({{"motion: {time_step: 1.5 ms}", statics}}),
@@ -143,6 +153,18 @@ TEST_F(ReadingAPredictionStudy, WarnsOfANegativePoissonRatioOnce) {
   const auto warned = HasSubstr("poisson_ratio is -0.4: an auxetic material");
   EXPECT_THAT(warnings("-0.4"), testing::Contains(warned).Times(1));
   EXPECT_THAT(warnings("0.4"), testing::Not(testing::Contains(HasSubstr("auxetic"))));
+}
+
+TEST_F(ReadingAPredictionStudy, WarnsOfImplausibleValuesOnce) {
+  const PredictionStudy study =
+      ReadBarStudy(folder_.Path(), {{"young_modulus: 0.15 MPa", "young_modulus: 10 GPa"},
+                                    {"    clock_deviation",
+                                     "    effects: [{type: drag, coefficient: 4000 kg/m^3}]\n"
+                                     "    clock_deviation"}});
+  EXPECT_THAT(StudyWarnings(study),
+              ElementsAre("neo_hookean.young_modulus is 1e+10 Pa; 1000 to 1e+07 Pa is usual for "
+                          "soft objects",
+                          HasSubstr("bar: drag.coefficient is 4000 kg/m^3; 0 to 300")));
 }
 
 TEST_F(ReadingAPredictionStudy, WarnsOfSettingsOfScansWithoutAScan) {

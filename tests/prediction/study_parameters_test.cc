@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "effects/catalogue.h"
 #include "effects/gravity.h"
 #include "prediction/prediction_study.h"
 #include "prediction/reading_a_prediction_study.h"
@@ -141,10 +142,28 @@ TEST_F(ReadingAPredictionStudy, StartsFromAnyValueThatTheCardAllows) {
     ASSERT_EQ(modulus.name, "young_modulus");
     EXPECT_EQ(modulus.start, 0.5);
     EXPECT_LT(modulus.min, modulus.start) << fit;
-    EXPECT_GT(modulus.min, 0) << "an open bound";
+    EXPECT_NEAR(modulus.min, 0.5e-6, 1e-12) << "an open bound, on a logarithmic scale";
   }
   EXPECT_THAT(MessageAfter({{"young_modulus: 0.15 MPa", "young_modulus: 0 Pa"}}),
               ContainsRegex("material.young_modulus: got \"0 Pa\""));
+}
+
+// How stiff a branch of a body may be is a question of how stiff the body is.
+TEST(ModelParameters, HaveStressesThatArePlausibleInTheirBody) {
+  const auto typical = [](double young_modulus, const std::string& name) {
+    const EffectList effects = {
+        MakeEffect("neo_hookean", {{"young_modulus", young_modulus}, {"poisson_ratio", 0.4}}),
+        MakeEffect("viscoelastic_branch",
+                   {{"modulus", 1e4}, {"relaxation_time", 1}, {"poisson_ratio", 0.4}}),
+        MakeEffect("mass_damping", {{"alpha", 1}})};
+    for (const ModelParameter& parameter : ModelParameters(effects))
+      if (parameter.prior.name == name) return parameter.prior.typical;
+    return 0.0;
+  };
+  EXPECT_DOUBLE_EQ(typical(1e5, "viscoelastic_branch.modulus"), 1.5e5);
+  EXPECT_DOUBLE_EQ(typical(5e6, "viscoelastic_branch.modulus"), 7.5e6);
+  EXPECT_EQ(typical(5e6, "mass_damping.alpha"), typical(1e5, "mass_damping.alpha"));
+  EXPECT_EQ(typical(5e6, "young_modulus"), typical(1e5, "young_modulus"));
 }
 
 // A fit stays away from a bound at which the model degenerates, not from one well before it.
@@ -199,9 +218,10 @@ TEST_F(ReadingAPredictionStudy, RefusesASecondGravityInARecording) {
     more.insert({"    fit_until", "    effects: [" + own + "]\n    fit_until"});
     return MessageAfter(more);
   };
-  EXPECT_THAT(message(gravity),
-              HasSubstr("recordings[0].effects[0].type: gravity is listed among the effects of the "
-                        "experiment already"));
+  EXPECT_THAT(
+      message(gravity),
+      HasSubstr("recordings[0].effects[0].type: gravity is already listed among the effects "
+                "of the experiment"));
   const Replacements nowhere_else{
       {"  - {type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}\n", ""}};
   EXPECT_EQ(message(gravity, nowhere_else), "nothing was refused");

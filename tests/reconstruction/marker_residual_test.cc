@@ -121,7 +121,7 @@ TEST(MarkerMotion, TheResidualOfMarkersThatAreTooFewForARegistrationIsNotZero) {
 
   // The files of the stage keep the reason.
   const TemporaryFolder& files = folder;
-  SaveFollowedMotion(followed.motion, files.Path());
+  WriteFollowedMotion(followed.motion, files.Path());
   const FollowedMotion read = ReadFollowedMotion(followed.study, followed.reference, files.Path());
   EXPECT_TRUE(std::isnan(read.noise));
   ASSERT_EQ(read.frames.size(), 3u);

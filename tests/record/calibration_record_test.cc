@@ -54,6 +54,7 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
                                             {},
                                             {-2, 0.4, 0.1}});
   record.prior_conflicts = {NuisanceParameterConflict{"a.delay", 4},
+                            ModelParameterConflict{"drag.linear", "kg/s", 3.2, 1, true},
                             MarkerConflict{"a", "tip", Eigen::Vector3d(1, 2, 3), 1e-4},
                             MarkerConflictCount{"a", 7, 8},
                             ReferenceShapeConflict{"a", 5, 1e-3, 1e-4},
@@ -92,7 +93,8 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   for (size_t k = 0; k < read.prior_conflicts.size(); ++k)
     EXPECT_EQ(PriorConflictToJson(read.prior_conflicts[k]),
               PriorConflictToJson(record.prior_conflicts[k]));
-  EXPECT_EQ(std::get<MarkerConflict>(read.prior_conflicts[1]).offset, Eigen::Vector3d(1, 2, 3));
+  EXPECT_TRUE(std::get<ModelParameterConflict>(read.prior_conflicts[1]).is_default);
+  EXPECT_EQ(std::get<MarkerConflict>(read.prior_conflicts[2]).offset, Eigen::Vector3d(1, 2, 3));
 }
 
 TEST(CalibrationRecord, AnEarlierFormatIsRefusedWithTheCommandToRun) {

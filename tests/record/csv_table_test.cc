@@ -22,7 +22,7 @@ TEST(CsvTableTest, NumbersAreReadBackExactlyAndNanStaysNan) {
   const TemporaryFolder folder;
   const Eigen::Vector3d values(0.1, 1e-310, -std::numeric_limits<double>::max());
   const Eigen::Vector3d others(std::nan(""), 1.0 / 3, std::numeric_limits<double>::infinity());
-  SaveCsv({{"time_s", values}, {"residual_m", others}}, folder / "a.csv");
+  WriteCsv({{"time_s", values}, {"residual_m", others}}, folder / "a.csv");
   const CsvTable table = LoadCsv(folder / "a.csv");
   ASSERT_EQ(table.size(), 2u);
   EXPECT_EQ(table[0].name, "time_s");
@@ -34,13 +34,13 @@ TEST(CsvTableTest, NumbersAreReadBackExactlyAndNanStaysNan) {
 
 TEST(CsvTableTest, TextHasTheFormThatSpreadsheetsExpect) {
   const TemporaryFolder folder;
-  SaveCsv({{"a", Eigen::Vector2d(1, 0.5)}, {"b", Eigen::Vector2d(-2, 1e20)}}, folder / "a.csv");
+  WriteCsv({{"a", Eigen::Vector2d(1, 0.5)}, {"b", Eigen::Vector2d(-2, 1e20)}}, folder / "a.csv");
   EXPECT_EQ(FileContent(folder / "a.csv"), "a,b\n1,-2\n0.5,1e+20\n");
 }
 
 TEST(CsvTableTest, TableWithoutRowsKeepsItsHeader) {
   const TemporaryFolder folder;
-  SaveCsv({{"a", Eigen::VectorXd(0)}}, folder / "a.csv");
+  WriteCsv({{"a", Eigen::VectorXd(0)}}, folder / "a.csv");
   const CsvTable table = LoadCsv(folder / "a.csv");
   ASSERT_EQ(table.size(), 1u);
   EXPECT_EQ(table[0].values.size(), 0);
@@ -74,10 +74,10 @@ TEST(CsvTableDeathTest, UnequalLengthsAndAmbiguousNamesAreRefused) {
   const TemporaryFolder folder;
   const Eigen::VectorXd two = Eigen::Vector2d(1, 2);
   const Eigen::VectorXd three = Eigen::Vector3d(1, 2, 3);
-  EXPECT_DEATH(SaveCsv({{"a", two}, {"b", three}}, folder / "a.csv"),
+  EXPECT_DEATH(WriteCsv({{"a", two}, {"b", three}}, folder / "a.csv"),
                "column b has another length");
-  EXPECT_DEATH(SaveCsv({{"a", two}, {"a", two}}, folder / "a.csv"), "two columns named a");
-  EXPECT_DEATH(SaveCsv({{"a,b", two}}, folder / "a.csv"), "cannot name a column");
+  EXPECT_DEATH(WriteCsv({{"a", two}, {"a", two}}, folder / "a.csv"), "two columns named a");
+  EXPECT_DEATH(WriteCsv({{"a,b", two}}, folder / "a.csv"), "cannot name a column");
 }
 
 }  // namespace

@@ -49,12 +49,16 @@ TEST(DiagnosisRecord, IsReadBackAsItWasWritten) {
   RecordedEffect refitted = record.ranking[0];
   refitted.sizes[0].refitted = RecordedInterval{2, 1, INFINITY};
   refitted.refit.emplace().evidence = 300;
+  refitted.sizes[0].plausible = 5;
+  refitted.sizes[0].at_limit = true;
   refitted.refit->unconverged = "the search was ended";
+  refitted.refit->fails_at_limit = true;
   refitted.refit->errors.without_nuisances = 1;
   refitted.refit->others.push_back({"drag.centre_x", "m", {0.05, -INFINITY, 0.07}});
   record.ranking.push_back(refitted);
   record.ranking.back().refit->removed = ByDataKind{700, 0, -3};
   record.alternatives = {{refitted}, 1000, 10};
+  record.decision.adequacy.p_unknown_force = NAN;  // no recording shows such a force
   const TemporaryFolder folder;
   WriteDiagnosisFile(record, folder / "diagnosis.json");
   const DiagnosisRecord read = ReadDiagnosisFile(folder / "diagnosis.json");
@@ -73,7 +77,13 @@ TEST(DiagnosisRecord, IsReadBackAsItWasWritten) {
   EXPECT_TRUE(read.ranking[1].refit->errors.has_held_out);
   EXPECT_EQ(read.decision.probabilities[1].kind, HypothesisProbability::Kind::kNothing);
   EXPECT_EQ(read.decision.FamilyProbability(EffectFamily::kLossOutside), 0.9);
+  EXPECT_TRUE(std::isnan(read.decision.adequacy.p_unknown_force));
   EXPECT_EQ(read.ranking[1].sizes[0].refitted->high, INFINITY);
+  EXPECT_TRUE(std::isnan(read.ranking[0].sizes[0].plausible));
+  EXPECT_FALSE(read.ranking[0].sizes[0].at_limit);
+  EXPECT_EQ(read.ranking[1].sizes[0].plausible, 5);
+  EXPECT_TRUE(read.ranking[1].sizes[0].at_limit);
+  EXPECT_TRUE(read.ranking[1].refit->fails_at_limit);
   EXPECT_EQ(read.ranking[1].refit->others[0].found.low, -INFINITY);
   ASSERT_TRUE(read.ranking[1].refit->removed);
   EXPECT_EQ(read.ranking[1].refit->removed->markers, 700);

@@ -34,7 +34,7 @@ Manifest Example() {
 TEST(ManifestTest, IsReadBackCompletely) {
   const TemporaryFolder folder;
   const Manifest written = Example();
-  SaveManifest(written, folder / "manifest.json");
+  WriteManifest(written, folder / "manifest.json");
   const Manifest read = LoadManifest(folder / "manifest.json");
   EXPECT_EQ(read.schema_version, kManifestSchemaVersion);
   EXPECT_EQ(read.program_version, written.program_version);
@@ -64,7 +64,7 @@ TEST(InputNameTest, DoesNotDependOnHowThePathIsSpelled) {
 TEST(ManifestTest, DamagedOrNewerFilesAreRefused) {
   const TemporaryFolder folder;
   const auto file = folder / "manifest.json";
-  SaveManifest(Example(), file);
+  WriteManifest(Example(), file);
   const std::string whole = FileContent(file);
   const auto expect = [&](const std::string& text, const std::string& cause) {
     std::ofstream(file) << text;

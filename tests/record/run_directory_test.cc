@@ -246,7 +246,7 @@ TEST_F(RunDirectoryTest, ResultsOfAnotherVersionAreNotResumed) {
   MakeFinishedRun();
   Manifest manifest = LoadManifest(folder_ / "manifest.json");
   manifest.library_versions["CGAL"] = "4.0";
-  SaveManifest(manifest, folder_ / "manifest.json");
+  WriteManifest(manifest, folder_ / "manifest.json");
   RunDirectory run(folder_);
   EXPECT_EQ(run.Check("fit", "key f").status, Status::kAbsent);
 }

@@ -53,7 +53,7 @@ TEST(RunRecordTest, IsReadBackCompletely) {
   const TemporaryFolder folder;
   RunRecord written = Example();
   written.frames_not_tried = 3;
-  SaveRunRecord(written, folder.Path());
+  WriteRunRecord(written, folder.Path());
   const RunRecord read = LoadRunRecord(folder.Path());
   EXPECT_EQ(read.recording, written.recording);
   EXPECT_EQ(read.object_size, written.object_size);
@@ -97,7 +97,7 @@ TEST(RunRecordTest, UnmeasuredValuesAreReadBackAsNotMeasured) {
   const TemporaryFolder folder;
   RunRecord empty;
   empty.frames.resize(1);
-  SaveRunRecord(empty, folder.Path());
+  WriteRunRecord(empty, folder.Path());
   const RunRecord read = LoadRunRecord(folder.Path());
   EXPECT_TRUE(std::isnan(read.object_size));
   EXPECT_TRUE(std::isnan(read.frames[0].residual));
@@ -122,7 +122,7 @@ TEST(RunRecordTest, IsUsableOnlyWhenEveryStageAndFrameIs) {
 
 TEST(RunRecordTest, FramesAreAlsoWrittenAsATable) {
   const TemporaryFolder folder;
-  SaveRunRecord(Example(), folder.Path());
+  WriteRunRecord(Example(), folder.Path());
   const CsvTable table = LoadCsv(folder / "frames.csv");
   const auto column = [&table](const std::string& name) {
     for (const CsvColumn& c : table) {
@@ -154,10 +154,10 @@ TEST(RunRecordDeathTest, InconsistentRecordsAreNotWritten) {
   const TemporaryFolder folder;
   RunRecord record = Example();
   record.point_residuals.resize(5, 3);
-  EXPECT_DEATH(SaveRunRecord(record, folder.Path()), "Check failed");
+  EXPECT_DEATH(WriteRunRecord(record, folder.Path()), "Check failed");
   record = Example();
   record.frames[0].residual = std::numeric_limits<double>::infinity();
-  EXPECT_DEATH(SaveRunRecord(record, folder.Path()), "infinite measure");
+  EXPECT_DEATH(WriteRunRecord(record, folder.Path()), "infinite measure");
 }
 
 }  // namespace

@@ -70,6 +70,15 @@ TEST(CalibrationReport, PrintsOnlyTheErrorsOfTheModelThatAreKnown) {
 TEST(CalibrationReport, DescribesEveryConflict) {
   EXPECT_EQ(DescribePriorConflict(NuisanceParameterConflict{"swing.delay", 4.2}),
             "swing.delay is 4.2 standard deviations of its prior away from 0");
+  ModelParameterConflict modulus{"young_modulus", "Pa", 3.24, 1e5, /*is_default=*/false};
+  const std::string given =
+      "young_modulus is 3.2 standard deviations of its prior away from the prior's mean, 1e+05 Pa";
+  EXPECT_EQ(DescribePriorConflict(modulus), given);
+  modulus.is_default = true;
+  EXPECT_EQ(DescribePriorConflict(modulus),
+            given +
+                "; this prior is the default one, from the plausible range of the parameter: "
+                "`mean` and `deviation` in `fit` replace it");
   EXPECT_THAT(
       DescribePriorConflict(MarkerConflict{"swing", "tip", Eigen::Vector3d(1e-3, 0, 0), 1e-4}),
       HasSubstr("the fit places marker tip (1, 0, 0) mm away from its recorded place"));

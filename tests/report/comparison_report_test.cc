@@ -61,6 +61,23 @@ TEST(ComparisonReport, SaysHowLargeTheErrorIsAndThatItIsNotNoise) {
   EXPECT_THAT(text, Not(HasSubstr("the place where it was measured")));
 }
 
+// A perfect order of three frames comes by chance once in three times. Of ten frames, correlations
+// beyond 0.794 come in one of a hundred cases (Zar, JASA 67, 1972), and the normal approximation
+// asks for 0.859.
+TEST(ComparisonReport, NamesNoTrendThatSoFewFramesWouldShowByChance) {
+  const auto told = [](double correlation, int of_bin) {
+    ComparisonRecord record = Example();
+    ErrorTrend& trend = record.recordings[0].parts[0].trends[0];
+    trend.rank_correlation = correlation;
+    for (ErrorBin& bin : trend.bins) bin.count = of_bin;
+    return DescribeComparison(record).at(0);
+  };
+  EXPECT_THAT(told(1, 2), HasSubstr("The error shows no clear trend"));
+  EXPECT_THAT(told(0.75, 5), HasSubstr("The error shows no clear trend"));
+  EXPECT_THAT(told(0.9, 5), HasSubstr("grows with speed (rank correlation 0.90)"));
+  EXPECT_THAT(told(0.29, 500), HasSubstr("The error shows no clear trend")) << "but a weak one";
+}
+
 // The rms error of 0.87 mm is 5 times the noise of a typical marker; markers with more noise make
 // up most of it.
 TEST(ComparisonReport, SaysThatMarkersCountInUnitsOfTheirOwnNoise) {

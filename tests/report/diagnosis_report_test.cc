@@ -46,6 +46,14 @@ TEST(DiagnosisReport, ShowsVerdictReasonsAndNextCommand) {
   EXPECT_THAT(text, Not(HasSubstr("Smallest size")));
 }
 
+TEST(DiagnosisReport, ShowsLongTimeStepsInSeconds) {
+  DiagnosisRecord record = MissingDrag();
+  record.time_step = 0.005;
+  EXPECT_THAT(DiagnosisReport(record, {}, "runs/bar"), HasSubstr("Time step: 5 ms."));
+  record.time_step = 10;
+  EXPECT_THAT(DiagnosisReport(record, {}, "runs/bar"), HasSubstr("Time step: 10 s."));
+}
+
 TEST(DiagnosisReport, ShowsWhatWouldHaveBeenSeenWhereNothingIsMissing) {
   DiagnosisRecord record = MissingDrag();
   record.verdict = Verdict::kAdequate;
@@ -90,6 +98,15 @@ TEST(DiagnosisReport, ShowsWhyARefitIsNotUsable) {
   const std::string text = DiagnosisReport(record, {}, "runs/bar");
   EXPECT_THAT(text, HasSubstr("not usable"));
   EXPECT_THAT(text, HasSubstr("no step could be taken"));
+}
+
+TEST(DiagnosisReport, MarksASizeAtTheLimitOfWhatIsPlausible) {
+  DiagnosisRecord record = MissingDrag();
+  const std::string mark =
+      "      coefficient is at the limit of what is plausible, where its interval is cut off\n";
+  EXPECT_THAT(DiagnosisReport(record, {}, "runs/bar"), Not(HasSubstr(mark)));
+  record.ranking[0].sizes[0].at_limit = true;
+  EXPECT_THAT(DiagnosisReport(record, {}, "runs/bar"), HasSubstr(mark));
 }
 
 TEST(DiagnosisReport, ShowsWhyARefitHasNotConverged) {

@@ -220,6 +220,33 @@ TEST(Headline, SaysWhatTheErrorIsDueToWhereItIsNoNoise) {
   EXPECT_THAT(Headline({model}).back(), HasSubstr("is that of the noise, or no larger"));
 }
 
+// "Nothing is missing" says nothing about an effect that the fitted parameters imitate.
+TEST(Headline, NamesEffectsThatWouldHaveStayedHidden) {
+  ReportedModel model = Model(2e-4, 1.1);
+  model.diagnosis = Diagnosis(Verdict::kAdequate, {});
+  const auto add = [&](const std::string& title, double detectable, double plausible) {
+    RecordedEffect& effect = model.diagnosis->ranking.emplace_back();
+    effect.type = effect.title = title;
+    effect.sizes = {{"size", "1"}};
+    effect.sizes[0].detectable = detectable;
+    effect.sizes[0].plausible = plausible;
+  };
+  add("seen", 0.9, 10);
+  add("not tried", INFINITY, NAN);
+  EXPECT_THAT(Headline({model}).at(1), Not(HasSubstr("Not every")));
+  add("imitated", INFINITY, 10);
+  add("weak", 1.1, 10);
+  EXPECT_THAT(
+      Headline({model}).at(1),
+      HasSubstr(" Not every further effect would have been noticed: imitated and weak could "
+                "have a tenth of the largest plausible size."));
+  model.diagnosis->ranking.back().sizes.push_back(model.diagnosis->ranking.front().sizes[0]);
+  EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: imitated could"))
+      << "one direction shows";
+  for (const char* title : {"one", "two", "three", "four"}) add(title, 20, 10);
+  EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: imitated, one, two and 2 others could"));
+}
+
 TEST(Headline, SaysThatItWasNotDiagnosedAndNotCompared) {
   EXPECT_THAT(
       Headline({Model(8.7e-4, 5.1)}),
@@ -331,6 +358,10 @@ TEST(Headline, SaysThatAMeasuredForceIsMissedByFarMoreThanTheMarkers) {
   EXPECT_THAT(Headline({model}).at(1),
               EndsWith("would fit with an offset of 0.4 N (`tare_deviation`), or if it came 200 ms "
                        "early (`delay_deviation`)."));
+  reaction.likely_mistakes = {9.81, -0.333, {}};
+  EXPECT_THAT(Headline({model}).at(1),
+              EndsWith("would fit if it were 9.81 times the force plus an offset of -0.333 N, as "
+                       "where the load or the reading has another unit."));
   // Markers that are missed as well.
   model.errors.rms_over_sigma = 200;
   EXPECT_THAT(Headline({model}), SizeIs(2));
@@ -349,6 +380,20 @@ TEST(Headline, NamesAConflictOfMoreThanTenStandardDeviations) {
             "The fit contradicts what the files say by 300 standard deviations, which should be "
             "checked first: swing: the fit places marker tip (0, 30, 0) mm away from its recorded "
             "place on the undeformed object; place_deviation is 0.1 mm.");
+}
+
+TEST(Headline, NamesTheParameterThatADefaultPriorHoldsBackMost) {
+  ReportedModel model = Model(3.1e-5, 0.9);
+  model.calibration.prior_conflicts = {
+      ModelParameterConflict{"young_modulus", "Pa", 9, 1e5, /*is_default=*/false}};
+  EXPECT_THAT(Headline({model}), SizeIs(1));
+  model.calibration.prior_conflicts = {
+      ModelParameterConflict{"mass_damping.alpha", "1/s", 3.2, 1, /*is_default=*/true},
+      ModelParameterConflict{"stiffness_damping.beta", "s", 12, 0.001, /*is_default=*/true}};
+  const std::vector<std::string> sentences = Headline({model});
+  ASSERT_THAT(sentences, SizeIs(2));
+  EXPECT_THAT(sentences[1], testing::StartsWith("A default prior may distort the fit: "
+                                                "stiffness_damping.beta is 12.0 standard"));
 }
 
 TEST(Headline, AFitThatFailedIsNotCalledAModel) {

@@ -46,6 +46,24 @@ TEST(ReportDocument, APlanIsShownAsLongAsItsDiagnosisStands) {
               HasSubstr("is of an earlier diagnosis and is not shown; `lacuna plan` makes"));
 }
 
+TEST(ReportDocument, APlanOfAnotherFormatIsLeftOutWithANote) {
+  const TemporaryFolder folder;
+  const std::filesystem::path run = folder / "bar";
+  WriteFit(run, {});
+  WriteSmallDiagnosis(run, *SmallLedger().models[0].diagnosis);
+  std::filesystem::create_directories(run / "plan");
+  const json plan = {{"schema_version", 3},
+                     {"diagnosis", HashFile(run / "diagnosis/diagnosis.json")},
+                     {"rivals", json::array()},
+                     {"outcomes", json::array()}};
+  std::ofstream(run / "plan/plan.json") << plan;
+  const json document = ShownRun(run);
+  EXPECT_TRUE(document.at("models").at(0).at("plan").is_null());
+  const std::vector<std::string> notes = document.at("notes");
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("The plan in the folder of bar is of an earlier version "
+                                           "of Lacuna and is not shown; `lacuna plan` makes")));
+}
+
 TEST(ReportDocument, WhatIsOfAnEarlierFitIsLeftOutWithANote) {
   const TemporaryFolder folder;
   WriteSmallChain(folder.Path());
@@ -93,7 +111,7 @@ TEST(ReportDocument, AnAddedModelOfAnotherVersionIsLeftOut) {
     stored.size = std::filesystem::file_size(file);
     stored.hash = HashFile(file);
   }
-  SaveManifest(manifest, manifest_file);
+  WriteManifest(manifest, manifest_file);
   const json run = ShownRun(folder / "bar");
   EXPECT_EQ(run.at("models").size(), 1u);
   EXPECT_THAT(run.at("notes").at(0).get<std::string>(), HasSubstr("ledger"));

@@ -115,6 +115,19 @@ TEST(VerdictText, SaysWhichEffectsAreRefuted) {
   EXPECT_THAT(ExplainVerdict(record), testing::Not(HasSubstr("refuted")));
 }
 
+TEST(VerdictText, SaysWhyAnEffectAtTheLimitIsNotRefuted) {
+  DiagnosisRecord record = SmallDiagnosis();
+  HypothesisProbability drag;
+  drag.kind = HypothesisProbability::Kind::kEffect;
+  drag.names = {"drag"};
+  record.decision.probabilities = {drag};
+  record.ranking[0].refit.emplace().evidence = 40;
+  EXPECT_THAT(ExplainVerdict(record), testing::Not(HasSubstr("refuted")));
+  record.ranking[0].refit->fails_at_limit = true;
+  EXPECT_THAT(ExplainVerdict(record),
+              HasSubstr("drag is not refuted: its size is at the limit of what is plausible. "));
+}
+
 TEST(VerdictText, SaysThatTheResidualIsUnexplained) {
   DiagnosisRecord record = SmallDiagnosis();
   record.verdict = Verdict::kNotInLibrary;

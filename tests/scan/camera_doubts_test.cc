@@ -53,7 +53,7 @@ struct Pair {
 TEST(CameraDoubts, PosesTheWrongWayRoundAreTold) {
   EXPECT_EQ(Pair().Doubt(false), "");
   EXPECT_THAT(Pair().Doubt(true),
-              AllOf(HasSubstr("its view shows nothing that another camera sees near"),
+              AllOf(HasSubstr("nothing that it sees is near what another camera sees"),
                     HasSubstr("with world_from_camera in place of camera_from_world")));
 }
 

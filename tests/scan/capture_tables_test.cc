@@ -155,7 +155,7 @@ TEST(MotiveCsv, RefusesWhatItCannotUse) {
   EXPECT_THAT(message(kMotive), HasSubstr("bad.csv: holds no frame"));
   EXPECT_THAT(message(kMotive + "0,0,9,9,9,1,q,3,4,5,6\n"), HasSubstr("bad.csv:8:13: got \"q\""));
   EXPECT_THAT(message(kMotive + "0,0,9,9,9,1,2,3,4,5,6\n1,0,9,9,9,1,2,3,4,5,6\n"),
-              HasSubstr("does not follow the one before"));
+              HasSubstr("is not later than that of the frame before"));
   EXPECT_THAT(message(kMotive + "0,0,9,9,9,1,2,3,4,5,6,7\n"), HasSubstr("has 12 entries"));
 }
 

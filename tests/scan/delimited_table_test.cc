@@ -78,7 +78,7 @@ TEST(DelimitedTable, RefusesANameThatSeveralColumnsHave) {
 
 TEST(DelimitedTable, RefusesCommasThatMaySeparateThousands) {
   EXPECT_THAT(ErrorOf([] { Table("t,F\n0.1,\"999.5\"\n0.2,\"-1,005\"\n"); }),
-              HasSubstr("t.csv:3:6: got \"-1,005\", which is -1005 with a separator of thousands "
+              HasSubstr("t.csv:3:6: got \"-1,005\", which is -1005 with a thousands separator "
                         "and -1.005 with a decimal comma"));
   EXPECT_THAT(ErrorOf([] { Table("t,F\n1,\"1,005\"\n2,\"1,006\"\n"); }), HasSubstr("is 1005 with"))
       << "nothing decides";

@@ -47,7 +47,7 @@ TEST_F(DisplacementTable, HasTheTimesAndForcesOfItsHeaders) {
   const Recording later = Load(yaml("  from: 101 s\n", ""));
   EXPECT_THAT(later.times, ElementsAre(102.5, 104));
   EXPECT_THAT(Load(yaml("  rate: 2 Hz\n", "")).times, ElementsAre(0, 0.5, 1));
-  EXPECT_THAT(LoadError(yaml("  header: {time: force}\n", "")), HasSubstr("does not follow"));
+  EXPECT_THAT(LoadError(yaml("  header: {time: force}\n", "")), HasSubstr("is not later than"));
   EXPECT_THAT(LoadError(yaml("  header: {time: time}\n  rate: 2 Hz\n", "")),
               HasSubstr("the times are given more than once"));
 }

@@ -80,12 +80,12 @@ TEST(FrameList, ReportsMissingFrames) {
               HasSubstr("pattern: frame 2: there is no file"));
   EXPECT_THAT(message("files: [s1.xyz, s3.xyz]"), HasSubstr("files: frame 1: there is no file"));
   EXPECT_THAT(message("files: s*.xyz"), HasSubstr("the frame numbered 3 is missing"));
-  EXPECT_THAT(message("files: t*.xyz"), HasSubstr("no file is named like"));
+  EXPECT_THAT(message("files: t*.xyz"), HasSubstr("no file matches"));
   EXPECT_THAT(message("first: 1"), HasSubstr("expected either files"));
   EXPECT_THAT(message("{files: [s1.xyz], pattern: s%d.xyz, count: 1}"),
               HasSubstr("expected either files"));
   EXPECT_THAT(message("{pattern: s.xyz, count: 1}"),
-              HasSubstr("expected one place for the number"));
+              HasSubstr("expected one placeholder for the number"));
 }
 
 TEST(FrameList, TakesTheNamesOfFoldersLiterally) {

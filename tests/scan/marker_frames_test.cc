@@ -52,6 +52,18 @@ TEST_F(RecordingTest, LoadsMarkersWithGapsAndFollowsThem) {
               HasSubstr("m.csv: frame 1: marker a is 1e+297 m away"));
 }
 
+TEST_F(RecordingTest, NamesMarkersThatNoFrameShows) {
+  const std::string frames = "  {kind: markers, file: m.csv, columns: {time: t}}\n";
+  const auto warnings = [&](const std::string& rows) {
+    folder_.Write("m.csv", "t,a_x,a_y,a_z,b_x,b_y,b_z,c_x,c_y,c_z\n" + rows);
+    WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+    return Load(Yaml(frames, "reference: {from: mesh, file: box.ply, length_unit: m}\n")).warnings;
+  };
+  EXPECT_THAT(warnings("0,1,2,3,,,,,,\n0.1,1,2,4,5,,7,,,\n"),
+              ElementsAre(HasSubstr("m.csv: markers are not seen in any frame: b, c; ")));
+  EXPECT_THAT(warnings("0,1,2,3,,,,4,5,6\n0.1,1,2,4,5,6,7,,,\n"), IsEmpty());
+}
+
 TEST_F(RecordingTest, WarnsOfMarkersAtZeroAndReadsTheirTimesInTheirUnit) {
   folder_.Write("m.csv",
                 "t,a_x,a_y,a_z,b_x,b_y,b_z\n0,10,0,0,50,0,9\n20,0,0,0,50,0,9\n40,0,0,0,0,0,0\n");
@@ -62,7 +74,7 @@ TEST_F(RecordingTest, WarnsOfMarkersAtZeroAndReadsTheirTimesInTheirUnit) {
   EXPECT_THAT(recording.times, ElementsAre(0, 0.02, 0.04));
   EXPECT_THAT(recording.warnings,
               ElementsAre(HasSubstr("m.csv: markers are at exactly (0, 0, 0), which counts as a "
-                                    "measured place: a in 2, b in 1 of 3 frames")));
+                                    "measured position: a in 2, b in 1 of 3 frames")));
   EXPECT_THAT(LoadError(Yaml(frames + ", markers: [a, b, a]}\n", reference)),
               HasSubstr("frames.markers: lists a twice"));
   EXPECT_THAT(

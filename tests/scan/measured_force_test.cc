@@ -78,7 +78,35 @@ TEST_F(ForcesOfRecording, HaveTheirOwnColumns) {
               HasSubstr("load.csv has no column \"x\"; say with"));
   EXPECT_THAT(Error("file: load.csv, time: t, x: t, y: F2, z: F3"), HasSubstr("is column 1 of"));
   folder_.Write("load.csv", "0,1,2,3\n1,1,2,3\n");
-  EXPECT_THAT(Error("file: load.csv, time: '1'"), HasSubstr("from which values are read, too"));
+  EXPECT_THAT(Error("file: load.csv, time: '1'"), HasSubstr("from which values are also read"));
+}
+
+// As for a load cell: a machine measures one component.
+TEST_F(ForcesOfRecording, MayHaveTheComponentsThatAreNamedAlone) {
+  WriteClouds(2);
+  folder_.Write("load.csv", "t,F,G\n0,4,1\n1,8,2\n");
+  const auto force = [&](const std::string& keys) {
+    const Recording recording = Load(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz}\n",
+                                          "forces: [{file: load.csv, time: t, " + keys + "}]\n"));
+    return Eigen::Matrix3Xd(recording.object.forces.at(0).forces);
+  };
+  Eigen::Matrix<double, 3, 2> expected;
+  expected << 0, 0, 0, 0, 4, 8;
+  EXPECT_EQ(force("z: F"), expected);
+  expected << 1e-3, 2e-3, 0, 0, 4e-3, 8e-3;
+  EXPECT_TRUE(force("z: F, x: G, unit: mN").isApprox(expected, 1e-15));
+  expected << 2.4, 4.8, -3.2, -6.4, 0, 0;
+  EXPECT_TRUE(force("along: [3, -4, 0], value: F").isApprox(expected, 1e-15));
+}
+
+TEST_F(ForcesOfRecording, MayNotLeaveOpenWhichComponentsAreMeant) {
+  folder_.Write("load.csv", "t,F,y\n0,4,1\n1,8,2\n");
+  EXPECT_THAT(Error("file: load.csv, time: t, z: F"),
+              HasSubstr("load.csv has a column \"y\", but `y` is not given"));
+  EXPECT_THAT(Error("file: load.csv, time: t, z: F, along: [0, 0, 1], value: F"),
+              HasSubstr("forces[0].along: the components x, y, z already have columns"));
+  EXPECT_THAT(Error("file: load.csv, time: t, along: [0, 0, 0], value: F"),
+              HasSubstr("forces[0].along: expected a direction other than 0"));
 }
 
 }  // namespace

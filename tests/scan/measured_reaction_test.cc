@@ -82,7 +82,7 @@ TEST_F(MeasuredReactionTest, TheUnitOfAColumnMayStandInOtherPlaces) {
   EXPECT_THAT(error("t,F\n(ms),(N)\n"), HasSubstr("say `time_unit: ms`"));
   EXPECT_THAT(error("t,F [lbf]\n"), HasSubstr("say `unit: lbf`"));
   for (const char* name : {"F [kg]", "F [g]", "F [V]", "F (mV)", "F [mm]", "F [%]"})
-    EXPECT_THAT(error(std::string("t,") + name + "\n"), HasSubstr("no unit of a force")) << name;
+    EXPECT_THAT(error(std::string("t,") + name + "\n"), HasSubstr("not a unit of a force")) << name;
   for (const char* name : {"Load [cell 1]", "F [1]", "F (left)", "F [N]", "F/N", "F_h", "F [n]"})
     EXPECT_EQ(error(std::string("t,") + name + "\n"), "no error") << name;
 }
@@ -116,7 +116,7 @@ TEST_F(MeasuredReactionTest, MistakesAreNamedWithTheirPlace) {
                     HasSubstr("there is no file")));
   EXPECT_THAT(error("{file: load.csv, time: t, z: fz, along: [0, 0, 1], value: fz}"),
               AllOf(HasSubstr("recording.yaml:7"), HasSubstr("measured_force.along"),
-                    HasSubstr("have columns already")));
+                    HasSubstr("already have columns")));
   EXPECT_THAT(error("{file: load.csv, time: t}"),
               AllOf(HasSubstr("recording.yaml:7"), HasSubstr("direction")));
   EXPECT_THAT(error("{file: load.csv, time: t, along: [0, 0, 0], value: fz}"),

@@ -48,13 +48,14 @@ TEST_F(RecordingTest, NotesThatAZeroNormalDiscardsAllGivenOnes) {
   const Recording recording = Load(Yaml("  {kind: points, files: [p.csv]}\n"));
   EXPECT_FALSE(LoadFrame(recording, 0).cloud.HasNormals());
   EXPECT_THAT(recording.warnings,
-              testing::Contains(HasSubstr("p.csv: 1 of 4 normals are zero, so that none of the "
-                                          "given ones is used: all are estimated")));
+              testing::Contains(HasSubstr("p.csv: 1 of 4 normals are zero, so none of the "
+                                          "given normals is used: all are estimated")));
   // Tracked points get no normals.
   const Frame tracked =
       LoadFrame(Load(Yaml("  {kind: points, files: [p.csv], tracked: true}\n")), 0);
   EXPECT_FALSE(tracked.cloud.HasNormals());
-  EXPECT_THAT(tracked.notes, testing::ElementsAre(testing::EndsWith("of the given ones is used")));
+  EXPECT_THAT(tracked.notes,
+              testing::ElementsAre(testing::EndsWith("of the given normals is used")));
 }
 
 TEST_F(RecordingTest, APointWithoutAFiniteNormalStays) {

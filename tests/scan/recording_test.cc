@@ -121,7 +121,7 @@ TEST_F(RecordingTest, RefusesContradictoryCounts) {
   EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv, times: [0 s, 1 s]}\n")),
               HasSubstr("frames.times: 2 times for 3 frames"));
   EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv, times: [0 s, 1 s, 1 s]}\n")),
-              HasSubstr("frames.times: frame 2: the time 1 s does not follow"));
+              HasSubstr("frames.times: frame 2: the time 1 s is not later than"));
   EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv}\n")),
               HasSubstr("no times are given"));
   EXPECT_THAT(

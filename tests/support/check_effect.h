@@ -20,6 +20,9 @@ struct CheckEffectOptions {
   bool depends_on_position = true;  // ∂f/∂x must differ from 0; else it must be 0
   bool depends_on_velocity = false;
   bool depends_on_acceleration = false;
+  // Whether the effect knows the potential of its force, where that has one. A law of the user does
+  // not.
+  bool has_known_energy = true;
   unsigned seed = 7;
   // The elasticity law of the body, for an effect that is defined relative to it. Its derivatives
   // by the parameters of the law are then checked too.
@@ -35,7 +38,10 @@ Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::Vec
 
 // At a random deformed state, moving with inertia, for linear and quadratic elements:
 //  - the card is complete and its parameters agree with Parameters() and WithParameters();
-//  - f = −∂E/∂x where the effect has an energy, and f = −Σ w P ∂N/∂X where it is a stress;
+//  - with and without inertia, the effect has an energy E if and only if its force has a potential,
+//    because it depends on the positions only and its derivative by them is symmetric; then
+//    f = −∂E/∂x;
+//  - f = −Σ w P ∂N/∂X where the effect is a stress;
 //  - AddTangents and AddSkewTangents together, and AddParameterDerivative, agree with central
 //    differences, for all weights and every parameter that is not a setting, and are not simply
 //    zero; they add into what is there, in proportion to the weight;

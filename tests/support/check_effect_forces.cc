@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "core/parallel.h"
@@ -32,24 +33,48 @@ Resultants ResultantsOf(const Eigen::VectorXd& position, const Eigen::VectorXd& 
   return sum;
 }
 
-}  // namespace
+// Whether the force has a potential: it depends on the positions only, and its derivative by them
+// is symmetric (Poincaré's lemma). Without inertia the accelerations are 0.
+bool HasPotential(const EffectInMotion& moving, bool has_inertia) {
+  const CheckEffectOptions& options = moving.options();
+  if (options.depends_on_velocity || (options.depends_on_acceleration && has_inertia)) return false;
+  BlockMatrix skew(moving.body().pattern);
+  return !moving.effect().AddSkewTangents(moving.Now(), {.position = 1}, &skew);
+}
 
-void CheckEnergy(const EffectInMotion& moving) {
-  const auto energy = moving.effect().Energy(moving.Now());
+// In a step with or without inertia.
+void CheckEnergyOfStep(const EffectInMotion& moving, bool has_inertia) {
+  const Effect& effect = moving.effect();
+  Motion motion = moving.motion();
+  if (!has_inertia) motion.acceleration.setZero();
+  const std::optional<double> energy = effect.Energy(moving.At(motion, has_inertia));
+  const bool has_potential = HasPotential(moving, has_inertia);
+  ASSERT_TRUE(!energy || has_potential) << "the force has no potential, but an energy";
+  ASSERT_TRUE(energy || !has_potential || !moving.options().has_known_energy)
+      << "the force has a potential, but no energy";
   if (!energy) return;
   ASSERT_TRUE(std::isfinite(*energy));
   std::mt19937 random(moving.options().seed + 1);
-  const Eigen::VectorXd force = moving.Force();
+  const Eigen::VectorXd force = moving.Force(motion, has_inertia);
   ASSERT_GT(force.norm(), 0);
   for (int k = 0; k < 3; ++k) {
     // A component along the force itself keeps the derivative away from zero.
     const Eigen::VectorXd direction = RandomVector(moving.size(), &random) + force / force.norm();
     const auto value = [&](double h) {
-      const Motion shifted = Shifted(moving.motion(), {.position = h}, direction);
-      return Eigen::Matrix<double, 1, 1>(-*moving.effect().Energy(moving.At(shifted)));
+      const Motion shifted = Shifted(motion, {.position = h}, direction);
+      return Eigen::Matrix<double, 1, 1>(-*effect.Energy(moving.At(shifted, has_inertia)));
     };
     const Eigen::Matrix<double, 1, 1> power(force.dot(direction));
     EXPECT_LT(BestError(value, power, 0.001), moving.options().tolerance) << "f = −∂E/∂x";
+  }
+}
+
+}  // namespace
+
+void CheckEnergy(const EffectInMotion& moving) {
+  for (const bool has_inertia : {true, false}) {
+    SCOPED_TRACE(has_inertia ? "with inertia" : "without inertia");
+    CheckEnergyOfStep(moving, has_inertia);
   }
 }
 

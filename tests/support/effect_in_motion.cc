@@ -55,15 +55,15 @@ EffectInMotion::EffectInMotion(const Effect& effect, int order, const CheckEffec
       order_(order),
       moving_(MakeMovingBody(effect, order, {2, 1, 2}, options)) {}
 
-Kinematics EffectInMotion::At(const Motion& motion) const {
-  return {moving_.body,        motion.position,    motion.velocity, motion.acceleration,
-          options_.time,       options_.time_step, moving_.state,   options_.elasticity,
-          /*has_inertia=*/true};
+Kinematics EffectInMotion::At(const Motion& motion, bool has_inertia) const {
+  return {moving_.body,        motion.position,     motion.velocity,
+          motion.acceleration, options_.time,       options_.time_step,
+          moving_.state,       options_.elasticity, has_inertia};
 }
 
-Eigen::VectorXd EffectInMotion::Force(const Motion& motion) const {
+Eigen::VectorXd EffectInMotion::Force(const Motion& motion, bool has_inertia) const {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(size());
-  effect_.AddForce(At(motion), &force);
+  effect_.AddForce(At(motion, has_inertia), &force);
   return force;
 }
 

@@ -61,9 +61,10 @@ class EffectInMotion {
   const Eigen::VectorXd& state() const { return moving_.state; }
   Eigen::Index size() const { return moving_.motion.position.size(); }  // of positions and forces
 
-  Kinematics At(const Motion& motion) const;
+  // Without inertia the accelerations of the motion must be 0.
+  Kinematics At(const Motion& motion, bool has_inertia = true) const;
   Kinematics Now() const { return At(moving_.motion); }
-  Eigen::VectorXd Force(const Motion& motion) const;
+  Eigen::VectorXd Force(const Motion& motion, bool has_inertia = true) const;
   Eigen::VectorXd Force() const { return Force(moving_.motion); }
   // The force at the motion of the body with other parameter values.
   Eigen::VectorXd ForceWith(const Eigen::VectorXd& values) const;
@@ -78,7 +79,8 @@ class EffectInMotion {
   const MovingBody moving_;
 };
 
-// f = −∂E/∂x, and f = −Σ w P ∂N/∂X (check_effect_forces.cc).
+// f = −∂E/∂x with an energy E wherever there is a potential, and f = −Σ w P ∂N/∂X
+// (check_effect_forces.cc).
 void CheckEnergy(const EffectInMotion& moving);
 void CheckStress(const EffectInMotion& moving);
 // Tangents against central differences, their sums, and the definite ones that replace them

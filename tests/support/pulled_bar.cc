@@ -10,6 +10,7 @@
 #include "fem/prediction.h"
 #include "geometry/embedding.h"
 #include "geometry/rotation.h"
+#include "prediction/prediction_study_reader.h"
 #include "support/replace_in_file.h"
 
 namespace lacuna {
@@ -94,6 +95,12 @@ recordings:
 )",
                                        (folder / "recording.yaml").string(), kPulledUntil);
   return WithReplacements(text, replaced);
+}
+
+PredictionStudy ReadPulledBarStudy(const std::filesystem::path& folder,
+                                   const std::map<std::string, std::string>& replaced) {
+  return ReadPredictionStudy(
+      Config::Parse(PulledBarExperiment(folder, replaced), (folder / "study.yaml").string()));
 }
 
 }  // namespace lacuna

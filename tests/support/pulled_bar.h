@@ -43,6 +43,8 @@ void WritePulledBar(const std::filesystem::path& folder, const PulledBarTruth& t
 // An experiment on it that fits Young's modulus from 0.15 MPa, with texts replaced.
 std::string PulledBarExperiment(const std::filesystem::path& folder,
                                 const std::map<std::string, std::string>& replaced = {});
+PredictionStudy ReadPulledBarStudy(const std::filesystem::path& folder,
+                                   const std::map<std::string, std::string>& replaced = {});
 
 }  // namespace lacuna
 

@@ -83,7 +83,7 @@ void WriteSmallFit(const std::filesystem::path& folder, const SmallRun& run,
   directory.Begin(configuration, {{"a/markers.csv", run.content}}, 0);
   directory.Store("calibration", "key", [&](const std::filesystem::path& stage) {
     WriteCalibrationFile(record, stage / "calibration.json");
-    SaveCsv(Misfit(record, run), stage / "misfit.csv");
+    WriteCsv(Misfit(record, run), stage / "misfit.csv");
   });
   directory.Finish();
   MakeFolder(MotionFile(folder, 0).parent_path());

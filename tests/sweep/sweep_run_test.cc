@@ -79,7 +79,7 @@ class SweepRunTest : public ::testing::Test {
 
 TEST_F(SweepRunTest, AFailureHasItsReasonAndDoneCasesAreKept) {
   PlanWithoutSecondFrame();
-  SaveOutcome(MadeUp(0.25), Case(0));
+  WriteOutcome(MadeUp(0.25), Case(0));
   const std::string before = FileContent(Case(0) / "outcome.json");
   EXPECT_THAT(UnfinishedCases(sweep_, {}), ElementsAre(2));
   EXPECT_EQ(RunSweep(sweep_, {.workers = 2}), 1);
@@ -140,12 +140,12 @@ TEST_F(SweepRunTest, ACaseThatDoesNotFitIntoMemoryStaysPlanned) {
 
 TEST_F(SweepRunTest, CollectListsEveryCaseReproducibly) {
   plan_ = PlanSmallSweep(folder_.Path(), std::string(kTwo) + "cases: [{forces.model: none}]\n");
-  SaveOutcome(MadeUp(0.25), Case(0));
+  WriteOutcome(MadeUp(0.25), Case(0));
   CaseOutcome failed;
   failed.message = "frame 3: no convergence";
-  SaveOutcome(failed, Case(2));
+  WriteOutcome(failed, Case(2));
   const auto collect = [this] {
-    SaveTable(CollectSweep(sweep_), sweep_);
+    WriteTable(CollectSweep(sweep_), sweep_);
     return FileContent(sweep_ / "table.txt") + FileContent(sweep_ / "table.csv") +
            FileContent(sweep_ / "table.json");
   };
@@ -174,7 +174,7 @@ TEST_F(SweepRunTest, ErrorNamesADamagedOutcome) {
 
 TEST_F(SweepRunTest, AnOutcomeWithAnotherNumberIsRefused) {
   plan_ = PlanSmallSweep(folder_.Path(), kTwo);
-  SaveOutcome(MadeUp(0.25), Case(0));
+  WriteOutcome(MadeUp(0.25), Case(0));
   EXPECT_TRUE(LoadOutcome(Case(0))->done);
   std::string text = FileContent(Case(0) / "outcome.json");
   const size_t at = text.find("0.25");

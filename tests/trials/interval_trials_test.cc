@@ -132,7 +132,7 @@ TEST(IntervalTrials, MeasuresTheTruthInDeviationsFromTheCentreOfTheInterval) {
 void WriteDraw(const std::filesystem::path& folder, int number, double deviations) {
   const TrialCase trial = DrawIntervalCase(Suite(kMass), number);
   MakeFolder(folder / trial.name);
-  SaveCase(trial, folder / trial.name);
+  WriteCase(trial, folder / trial.name);
   WriteFileAtomically(folder / trial.name / "intervals.json",
                       R"({"schema_version": 1, "parameters": [{"name": "E", "unit": "Pa",
  "truth": 0, "value": 0, "low": 0, "high": 0, "deviations": )" +

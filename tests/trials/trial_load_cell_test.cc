@@ -61,7 +61,7 @@ TEST(TrialLoadCells, AreKeptWithTheCase) {
   trial.load_cell = DrawLoadCell(trial.seed, 1);
   ASSERT_TRUE(trial.load_cell.has_value());
   EXPECT_FALSE(DrawLoadCell(trial.seed, 0).has_value());
-  SaveCase(trial, folder.Path());
+  WriteCase(trial, folder.Path());
   EXPECT_EQ(TextOfCase(LoadCase(folder.Path())), TextOfCase(trial));
 }
 

@@ -34,8 +34,8 @@ class InventedSuite {
     outcome.ranked = ranked;
     outcome.seconds = 10.0 * count_;
     MakeFolder(Path() / trial.name);
-    SaveCase(trial, Path() / trial.name);
-    SaveTrialOutcome(outcome, Path() / trial.name);
+    WriteCase(trial, Path() / trial.name);
+    WriteTrialOutcome(outcome, Path() / trial.name);
   }
   std::filesystem::path Path() const { return folder_.Path(); }
 
@@ -105,7 +105,7 @@ TEST(TrialReport, IsSavedWithTheCasesThatAreNotCounted) {
   const TrialReport report = ReportTrials(suite.Path());
   EXPECT_THAT(report.unfinished, ElementsAre("case_1"));
   EXPECT_THAT(report.skipped, ElementsAre("dust"));
-  SaveTrialReport(report, suite.Path());
+  WriteTrialReport(report, suite.Path());
   EXPECT_EQ(FileContent(suite.Path() / "report.txt"), ReportInWords(report));
   EXPECT_THAT(ReportInWords(report), HasSubstr("cases that could not be made: 1"));
   const nlohmann::json json = ReadJsonFile(suite.Path() / "report.json");

@@ -60,11 +60,11 @@ TEST(RedecideOutcome, ReplacesAFalsifiedVerdict) {
   falsified.error_before = 1.5;
   falsified.probabilities = {
       {.kind = HypothesisProbability::Kind::kEffect, .names = {"pressure"}, .probability = 1}};
-  SaveTrialOutcome(falsified, folder.Path());
+  WriteTrialOutcome(falsified, folder.Path());
   EXPECT_FALSE(RedecideOutcome(CaseWithDrag(), folder.Path())) << "no decision was kept";
   EXPECT_EQ(LoadTrialOutcome(folder.Path()).named, falsified.named);
 
-  SaveDecisionInput(input, folder / kDecisionFolder);
+  WriteDecisionInput(input, folder / kDecisionFolder);
   ASSERT_TRUE(RedecideOutcome(CaseWithDrag(), folder.Path()));
   const TrialOutcome outcome = LoadTrialOutcome(folder.Path());
   EXPECT_EQ(outcome.verdict, decision.verdict);
@@ -90,8 +90,8 @@ TEST(RunFollowUps, FollowsOpenCasesAndKeepsWhyOneFailed) {
     outcome.verdict = verdict;
     outcome.named = {"drag"};
     MakeFolder(folder / name);
-    SaveCase(trial, folder / name);
-    SaveTrialOutcome(outcome, folder / name);
+    WriteCase(trial, folder / name);
+    WriteTrialOutcome(outcome, folder / name);
   };
   keep("closed", TrialGroup::kOneEffect, Verdict::kMissing);
   keep("open", TrialGroup::kOneEffect, Verdict::kAdequate);

@@ -245,8 +245,8 @@ TEST(TrialRates, CountsDecidableCasesAndReliability) {
 void Write(const std::filesystem::path& folder, const TrialCase& trial,
            const TrialOutcome& outcome) {
   MakeFolder(folder / trial.name);
-  SaveCase(trial, folder / trial.name);
-  SaveTrialOutcome(outcome, folder / trial.name);
+  WriteCase(trial, folder / trial.name);
+  WriteTrialOutcome(outcome, folder / trial.name);
 }
 
 TEST(TrialReport, CountsCorrectWrongAndAmbiguousVerdicts) {
@@ -331,9 +331,9 @@ TEST(FollowUps, AreCountedBesideWhatThePlanPredicted) {
     for (const auto& [own, outcome] :
          {std::pair{folders[0], right}, std::pair{folders[1], wrong}}) {
       MakeFolder(own);
-      SaveTrialOutcome(outcome, own);
+      WriteTrialOutcome(outcome, own);
     }
-    SaveFollowUps(made, folder / trial.name);
+    WriteFollowUps(made, folder / trial.name);
   };
   const FollowUp best{"pull twice", 0.9, {}}, random{"repeat", std::nullopt, {}};
   keep(cases[0], {"", best, random});

@@ -288,7 +288,7 @@ function agreement(isSecond) {
 
 // A plan in which a shaken clamp decides between two losses.
 function plan() {
-  const rival = (effect, title, probability) => ({ effect, title, probability, named_now: 0.02 });
+  const rival = (effect, title, probability) => ({ effect, effects: [effect], title, probability, of_diagnosis: probability, named_now: 0.02 });
   const times = Array.from({ length: 61 }, (_, k) => 0.01 * k);
   const curve = (component, values) => ({ what: 'path of clamp', component, unit: 'm', values });
   const protocol = { times_s: times, release_s: 0.1037, curves: [curve('x', times.map(() => 0)), curve('z', times.map((t) => (t > 0.1037 ? 0.0025 * Math.sin(60 * (t - 0.1037)) ** 2 : 0))),
@@ -296,8 +296,8 @@ function plan() {
   const outcome = (name, what, drag, mass, lambda, seconds) => ({ name, what, seconds, message: '', named: { drag, mass_damping: mass }, probability: 0.52 * drag + 0.48 * mass, protocol, experiment: '',
     pairs: [{ first: 'drag', second: 'mass_damping', lambda_now: 0.1, lambda_then: lambda }], sizes: [{ effect: 'drag', parameter: 'coefficient', unit: 'kg/m', value: 0.4, half_width_now: 0.3, half_width_then: 0.06 }] });
   return {
-    schema_version: 1, run: 'bar', verdict: 'ambiguous', rivals: [rival('drag', 'drag of the surrounding medium', 0.52), rival('mass_damping', 'mass-proportional damping', 0.48)],
-    also_left: [], not_predicted: ['plane_contact'],
+    schema_version: 4, run: 'bar', verdict: 'ambiguous', rivals: [rival('drag', 'drag of the surrounding medium', 0.52), rival('mass_damping', 'mass-proportional damping', 0.48)],
+    no_effect: 0, also_left: [], not_predicted: ['plane_contact'],
     outcomes: [outcome('shake along z', '"bar" with clamp shaken by 2.546 mm along z at 19.4 Hz', 1, 0.99, 25.9, 0.25), outcome('repeat', '"bar" once more', 0.02, 0, 0.12, 0.25),
       { name: 'turn about x', what: '', seconds: 0, message: 'at 0 s clamp would be 2 mm behind the plane of contact', named: {}, probability: 0, pairs: [], sizes: [], protocol: { times_s: [], release_s: null, curves: [] }, experiment: '' }],
   };
@@ -320,7 +320,7 @@ function diagnosis(isSecond, errors) {
     nuisances: [{ nuisance: 'mesh', what: 'elements that are too coarse', advice: 'refine the mesh', evidence: 10958.3, refitted_evidence: null, explained_share: 0.46, adopted: true, evidence_uncertainty: 3 },
                 { nuisance: 'time_jitter', what: 'the times of single frames of recording 1', advice: 'check the clock', evidence: 3314.1, refitted_evidence: 120, explained_share: 0.37, adopted: false, evidence_uncertainty: 0 },
                 { nuisance: 'clock', what: 'the clock of recording 1', advice: 'check the clock', evidence: -2, refitted_evidence: null, explained_share: 0, adopted: false, evidence_uncertainty: 0 }],
-    agreement: agreement(isSecond), ranking, untried: [{ effect: 'plane_contact', why: 'the predicted body crosses no plane that the measured one stays behind' }], alternatives: { effects: [], nuisances_evidence: 0, rms_over_sigma_without_both: 0 },
+    agreement: agreement(isSecond), ranking, untried: [{ effect: 'plane_contact', why: 'there is no plane that the predicted body crosses and the measured one does not' }], alternatives: { effects: [], nuisances_evidence: 0, rms_over_sigma_without_both: 0 },
   };
 }
 

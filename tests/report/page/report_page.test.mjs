@@ -431,6 +431,34 @@ for (const [kind, lines] of Object.entries(OPTIONAL_PARTS)) {
   });
 }
 
+// The text about the next recording after `change` of each plan.
+async function planText(change) {
+  const file = join(folder, 'plan.html'), data = kinds.full({ vertices: 60, frames: 8 });
+  for (const run of data.runs) for (const model of run.models) if (model.plan) change(model.plan);
+  writeReport(data, file);
+  const { page, problems, close } = await open(file);
+  const text = await page.locator('#plan').textContent();
+  assert.deepEqual(problems, []);
+  await close();
+  return text;
+}
+
+test('a plan after an adequate model says that nothing is open', async () => {
+  assert.ok((await planText(() => {})).includes('To be told apart: drag of the surrounding medium (52 %)'));
+  const text = await planText((plan) => Object.assign(plan, { verdict: 'adequate', no_effect: 0.91 }));
+  assert.ok(text.includes('Nothing is open') && text.includes('91 %'));
+  assert.ok(!text.includes('To be told apart'));
+  const left = await planText((plan) => { plan.also_left = [{ nuisance: 'clock', title: 'a clock that is late', probability: 0.3 }]; });
+  assert.ok(left.includes('a clock that is late (30 %)'));
+});
+
+// What tells a pair is the list of its effects: its name may be any.
+test('a plan says that pairs count as not named if it weighs one', async () => {
+  const note = 'where two effects at once count as not named';
+  assert.ok(!(await planText((plan) => { plan.rivals[1].effects = ['mass_damping']; })).includes(note));
+  assert.ok((await planText((plan) => { plan.rivals[1].effects = ['gravity', 'mass_damping']; })).includes(note));
+});
+
 test('every part is there when its data is', async () => {
   const full = await open(fixture('full'));
   for (const id of ['errors', 'force', 'physics', 'plan', 'parameters', 'agreement', 'validation', 'provenance']) assert.equal(await full.page.locator(`#${id}`).count(), 1, id);

@@ -7,7 +7,7 @@ import { grid, name, section, table } from './section.js';
 const COLOURS = ['series-first', 'series-last', 'series-2', 'series-1', 'series-4'];
 
 const isPlayable = (outcome) => !outcome.message;
-const isPair = (rival) => String(rival.effect).includes(' with ');
+const isPair = (rival) => rival.effects?.length === 2;
 
 function leastSeparation(outcome) {
   const lambdas = (outcome.pairs ?? []).map((pair) => pair.lambda_then).filter(isNumber);
@@ -22,7 +22,7 @@ function ranked(plan) {
     h('div', {}, (plan.rivals ?? []).map((rival) => h('div', { class: 'nowrap' }, `${posterior(outcome.named?.[rival.effect])} if ${rival.title}`.slice(0, 120)))),
     number(leastSeparation(outcome)), seconds(outcome.seconds)]);
   const pairs = (plan.rivals ?? []).some(isPair) ? ', where two effects at once count as not named' : '';
-  return h('div', {}, table(`Now the right name is expected in ${percent(now)} of such cases${pairs}.`,
+  return h('div', {}, table(`If ${(plan.rivals ?? []).length === 1 ? 'it' : 'one of them'} is missing, recordings like these lead to the right name in ${percent(now)} of cases${pairs}.`,
     [['recording'], ['right name', true, 'averaged over the rivals with their probabilities'], ['for each rival'], ['least λ', true, 'of two rivals, with the recording; 12 separates them in four cases of five'], ['length', true]], rows));
 }
 
@@ -45,11 +45,21 @@ function picture(best) {
   }));
 }
 
+// What is open, with the probabilities of the diagnosis.
+function question(plan) {
+  const list = (entries, probability) => entries.map((entry) => `${entry.title} (${posterior(probability(entry))})`).join(', ');
+  const rivals = list(plan.rivals ?? [], (rival) => rival.of_diagnosis);
+  if (plan.verdict === 'adequate')
+    return `Nothing is open: the recordings show no missing effect (probability ${posterior(plan.no_effect)}). If one were there, these would be the most probable: ${rivals}.`;
+  const left = list(plan.also_left ?? [], (nuisance) => nuisance.probability);
+  return `To be told apart: ${rivals}.${left ? ` The plan does not weigh errors of the measurement or of the discretisation, which could explain the recordings, too: ${left}.` : ''}`;
+}
+
 function block({ plan, label }) {
   const best = plan.outcomes?.find(isPlayable);
   const failed = (plan.outcomes ?? []).filter((outcome) => !isPlayable(outcome));
   return h('div', { class: 'block' }, h('div', { class: 'block-head' }, h('h3', {}, name(label)),
-    h('p', { class: 'explain' }, `To be told apart: ${(plan.rivals ?? []).map((rival) => `${rival.title} (${posterior(rival.probability)})`).join(', ')}.`.slice(0, 1500))),
+    h('p', { class: 'explain' }, question(plan).slice(0, 1500))),
   best ? [ranked(plan), h('h4', {}, 'The best recording: ', name(best.what)), picture(best), intervals(best)] : null,
   failed.length > 0 ? h('p', { class: 'explain' }, `Cannot be made: ${failed.map((outcome) => `${outcome.name} (${outcome.message})`).join('; ').slice(0, 1500)}.`) : null,
   plan.not_predicted?.length ? h('p', { class: 'explain' }, `Not planned for: ${plan.not_predicted.join(', ').slice(0, 500)}.`) : null);

@@ -10,9 +10,10 @@
 namespace lacuna {
 namespace {
 
-// A steady motion adds nothing, a marker that is not seen is passed over.
-TEST(MarkerNoise, IsThatOfTheCoordinates) {
-  constexpr double kNoise = 2e-4;
+// Markers that move at a constant velocity, so that their second differences over time are noise
+// alone. One of them is missing in every third frame and therefore has no second difference.
+TEST(MarkerNoise, IsThatOfACoordinateUnderASteadyMotion) {
+  constexpr double kNoise = 2e-4;  // m
   PredictedRecording item;
   item.recording.markers.places = Eigen::Matrix3Xd::Random(3, 20);
   std::mt19937 random(3);
@@ -26,8 +27,10 @@ TEST(MarkerNoise, IsThatOfTheCoordinates) {
     item.recording.times.push_back(0.01 * frame);
     frames.push_back(frame);
   }
-  // The median of 57 medians of 198 values each.
+  // The median over the 57 coordinates of 19 markers, each from the median of 198 differences, has
+  // a standard deviation of about 1.7 % of the noise.
   EXPECT_NEAR(EstimateRecordingNoise(item, frames), kNoise, 0.05 * kNoise);
+  // Two frames have no second difference.
   EXPECT_EQ(EstimateRecordingNoise(item, {0, 1}), 0);
 }
 
