@@ -162,7 +162,7 @@ TEST_F(ReadingAPredictionStudy, WarnsOfImplausibleValuesOnce) {
                                      "    effects: [{type: drag, coefficient: 4000 kg/m^3}]\n"
                                      "    clock_deviation"}});
   EXPECT_THAT(StudyWarnings(study),
-              ElementsAre("neo_hookean.young_modulus is 1e+10 Pa; 1000 to 1e+07 Pa is usual for "
+              ElementsAre("neo_hookean.young_modulus is 1e+10 Pa; 1000 to 1e+07 is usual for "
                           "soft objects",
                           HasSubstr("bar: drag.coefficient is 4000 kg/m^3; 0 to 300")));
 }

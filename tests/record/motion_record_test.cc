@@ -78,7 +78,7 @@ TEST(MotionRecord, LargeScansAreThinnedWithANote) {
   WriteMotionFile(motion, folder / "motion.json");
   const StoredMotion stored = ReadMotionFile(folder / "motion.json");
   EXPECT_EQ(Unpack(stored.points.at("measured")).shape[1], kMostShownPoints);
-  EXPECT_THAT(stored.notes, testing::ElementsAre(testing::HasSubstr("at most 4000")));
+  EXPECT_THAT(stored.notes, testing::ElementsAre(testing::HasSubstr("At most 4000")));
 }
 
 TEST(MotionRecord, WhatIsNotShownIsNoted) {

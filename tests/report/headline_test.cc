@@ -240,7 +240,9 @@ TEST(Headline, NamesEffectsThatWouldHaveStayedHidden) {
       Headline({model}).at(1),
       HasSubstr(" Not every further effect would have been noticed: imitated and weak could "
                 "have a tenth of the largest plausible size."));
-  model.diagnosis->ranking.back().sizes.push_back(model.diagnosis->ranking.front().sizes[0]);
+  std::vector<RecordedSize>& sizes = model.diagnosis->ranking.back().sizes;
+  sizes.push_back(sizes.front());
+  sizes.back().detectable = 0.9;
   EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: imitated could"))
       << "one direction shows";
   for (const char* title : {"one", "two", "three", "four"}) add(title, 20, 10);
