@@ -224,7 +224,8 @@ TEST(ExtendedExperiment, ALawThatVanishesElsewhereStartsWhereItsRefitEnded) {
   std::filesystem::create_directory(folder / "diagnosis");
   std::ofstream(folder / "diagnosis/of_fit.json")
       << R"({"settings": {"push": {"values": [7], "start": [5], "model": [], "amplitude": [0],
-             "refined": {}, "known": {}, "replaces_material": false}}})";
+             "refined": {}, "known": {}, "replaces_material": false,
+             "young_modulus": 1e5}}})";
   RecordedEffect recorded;
   recorded.type = "push";
   recorded.sizes.resize(1);
