@@ -229,10 +229,18 @@ double ProbabilityOfNoEffect(const DecisionRecord& decision) {
   });
 }
 
+// Whether the model has an effect of this type, of which the fit determines a parameter.
+bool IsFitted(const ReportedModel& model, const std::string& type) {
+  const auto& parameters = model.calibration.parameters;
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [&](const auto& parameter) { return parameter.name.starts_with(type + "."); });
+}
+
 // The effects that would have stayed hidden in the recordings at a considerable size, in a sentence
 // of its own; empty where there are none. Hypotheses that are not tried to first order do not
 // count.
-std::string HiddenSentence(const DiagnosisRecord& diagnosis) {
+std::string HiddenSentence(const ReportedModel& model) {
+  const DiagnosisRecord& diagnosis = *model.diagnosis;
   constexpr double kConsiderable = 0.1;  // of the largest plausible size
   constexpr size_t kMostNames = 3;
   std::vector<std::string> hidden;
@@ -242,7 +250,9 @@ std::string HiddenSentence(const DiagnosisRecord& diagnosis) {
         std::all_of(effect.sizes.begin(), effect.sizes.end(), [](const RecordedSize& size) {
           return size.detectable > kConsiderable * size.plausible;
         });
-    if (is_hidden) hidden.push_back(ShortTitle(diagnosis, effect.type));
+    if (is_hidden)
+      hidden.push_back((IsFitted(model, effect.type) ? "another " : "") +
+                       ShortTitle(diagnosis, effect.type));
   }
   if (hidden.empty()) return "";
   if (const size_t others = hidden.size() - std::min(hidden.size(), kMostNames); others > 0) {
@@ -255,7 +265,8 @@ std::string HiddenSentence(const DiagnosisRecord& diagnosis) {
       EnumerationText(hidden));
 }
 
-std::string AdequateSentence(const DiagnosisRecord& diagnosis) {
+std::string AdequateSentence(const ReportedModel& model) {
+  const DiagnosisRecord& diagnosis = *model.diagnosis;
   const double nothing = ProbabilityOfNoEffect(diagnosis.decision);
   const std::string corrected = CorrectedError(diagnosis);
   return fmt::format(
@@ -268,7 +279,7 @@ std::string AdequateSentence(const DiagnosisRecord& diagnosis) {
       corrected.empty() ? "the error that is left is that of the noise, or no larger than the "
                           "error of any model"
                         : corrected,
-      HiddenSentence(diagnosis));
+      HiddenSentence(model));
 }
 
 std::string UnknownSentence(const DiagnosisRecord& diagnosis) {
@@ -308,7 +319,7 @@ std::string VerdictSentence(const ReportedModel& model) {
     case Verdict::kAdequate:
       break;
   }
-  return AdequateSentence(diagnosis);
+  return AdequateSentence(model);
 }
 
 // Where nothing more is missing in the recordings that were fitted, but others are not met: those.

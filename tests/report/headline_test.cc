@@ -245,6 +245,9 @@ TEST(Headline, NamesEffectsThatWouldHaveStayedHidden) {
   sizes.back().detectable = 0.9;
   EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: imitated could"))
       << "one direction shows";
+  model.calibration.parameters.emplace_back().name = "imitated.size";
+  EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: another imitated could"));
+  model.calibration.parameters.pop_back();
   for (const char* title : {"one", "two", "three", "four"}) add(title, 20, 10);
   EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: imitated, one, two and 2 others could"));
 }
