@@ -298,6 +298,16 @@ std::string UnknownSentence(const DiagnosisRecord& diagnosis) {
       remains.rms_over_sigma);
 }
 
+// A wrong stiffness that no fit may correct looks like a missing effect. Empty where it was fitted.
+std::string HeldModulusSentence(const ReportedModel& model) {
+  for (const HeldParameter& held : model.calibration.held)
+    if (held.name == "young_modulus")
+      return fmt::format(
+          " Young's modulus was not fitted: if {:.3g} {} is wrong, an effect may stand in for it.",
+          held.values.front(), held.unit);
+  return "";
+}
+
 std::string VerdictSentence(const ReportedModel& model) {
   if (!model.diagnosis)
     return model.errors.rms_over_sigma < kBeyondNoise
@@ -306,13 +316,13 @@ std::string VerdictSentence(const ReportedModel& model) {
   const DiagnosisRecord& diagnosis = *model.diagnosis;
   switch (diagnosis.verdict) {
     case Verdict::kMissing:
-      return MissingSentence(model);
+      return MissingSentence(model) + HeldModulusSentence(model);
     case Verdict::kAmbiguous:
-      return AmbiguousSentence(model);
+      return AmbiguousSentence(model) + HeldModulusSentence(model);
     case Verdict::kNuisance:
       return NuisanceSentence(model);
     case Verdict::kNotInLibrary:
-      return UnknownSentence(diagnosis);
+      return UnknownSentence(diagnosis) + HeldModulusSentence(model);
     case Verdict::kNoPower:
       return "These recordings could not show any effect of plausible size, so that nothing can be "
              "said about what is missing: more motion, other loads or less noise are needed.";

@@ -252,6 +252,18 @@ TEST(Headline, NamesEffectsThatWouldHaveStayedHidden) {
   EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: imitated, one, two and 2 others could"));
 }
 
+// What no fit may correct can look like a missing effect.
+TEST(Headline, DoubtsANameBesideAHeldModulus) {
+  ReportedModel model = Model(8.7e-4, 5.1);
+  model.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+  const std::string doubt = "Young's modulus was not fitted: if 2e+06 Pa is wrong, an effect may";
+  EXPECT_THAT(Headline({model}).at(1), Not(HasSubstr("not fitted")));
+  model.calibration.held = {{"density", "kg/m^3", {1000}}, {"young_modulus", "Pa", {2e6}}};
+  EXPECT_THAT(Headline({model}).at(1), HasSubstr(doubt));
+  model.diagnosis = Diagnosis(Verdict::kAdequate, {});
+  EXPECT_THAT(Headline({model}).at(1), Not(HasSubstr("not fitted")));
+}
+
 TEST(Headline, SaysThatItWasNotDiagnosedAndNotCompared) {
   EXPECT_THAT(
       Headline({Model(8.7e-4, 5.1)}),
