@@ -49,8 +49,8 @@ bool Intervals(const std::filesystem::path& suite, const std::filesystem::path& 
 
 int Main(int argc, char** argv) {
   CLI::App app(
-      "Tests the diagnosis on sealed cases: recordings simulated with an effect that the model "
-      "lacks and that is hidden from the diagnosis");
+      "Tests the diagnosis on sealed cases: simulated recordings, most of them with an effect that "
+      "the model lacks; the diagnosis is not told which");
   app.footer(
       "Exit status: 0 done; 1 the process of a case has failed; 2 unusable input;\n"
       "130 stopped by Ctrl-C (run the same command again to resume).");

@@ -1,9 +1,9 @@
 #include "calibration/known_errors.h"
 
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,8 +18,12 @@ namespace lacuna {
 
 KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                             Progress* progress) {
-  std::atomic<int64_t> frames = 0;
-  const std::function<void()> on_frame = [&] { progress->Report(++frames); };
+  int64_t frames = 0;
+  std::mutex counting;  // several threads predict; the count must not go backwards
+  const std::function<void()> on_frame = [&] {
+    const std::lock_guard lock(counting);
+    progress->Report(++frames);
+  };
   KnownErrors errors;
   errors.at_limit = values;
   errors.deviation = Eigen::VectorXd::Zero(values.size());

@@ -24,8 +24,8 @@ constexpr double kLargestWidth = kStandardGravity;  // m/s², upper limit of the
 // predictions.
 constexpr double kAgreement = 0.1;
 constexpr double kAgreementOverSigma = 0.5;
-// ... and if the step has not increased the error beyond the prediction by more than this share:
-// near the solution, where a step hardly changes it, the error may grow by the curvature alone.
+// ... and if the error is by no more than this share larger than before the step, or than
+// predicted: near the solution, where a step hardly changes it, it may grow by the curvature alone.
 // Larger: a step that makes matters worse may end the search.
 constexpr double kSameError = 0.01;
 constexpr double kShortestStep = 0.2;  // a step that does not reduce the error is halved down to it

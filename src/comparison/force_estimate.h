@@ -31,9 +31,9 @@ UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
                                           const ReplayedMotion& motion,
                                           const MeasurementErrors& errors);
 
-// Whether a full step ends the search: the error along the new motion is the one that the linear
-// model has predicted, and no larger than before the step. All three are rms of the whitened
-// residual, in σ.
+// Whether a full step ends the search: the error along the new motion is about the one that the
+// linear model has predicted, and no more than 1 % larger than before the step (or than predicted,
+// if that is larger). All three are rms of the whitened residual, in σ.
 bool HasConverged(double rms_before, double expected_rms, double reached_rms);
 
 }  // namespace lacuna

@@ -1,14 +1,15 @@
-// Whether a hypothesis leaves what noise leaves: three statistics of its residual, each compared
-// with its distribution if the hypothesis is right.
+// Whether a hypothesis leaves what noise leaves: up to three statistics of its residual, each
+// compared with its distribution if the hypothesis is right.
 //
-// The statistics are the log Bayes factor of an unknown smooth force beside the hypothesis, the
-// largest evidence (NamedEvidence) of any further effect or nuisance beside it, and, where the
-// noise is known, the variance of the residual. With noise, and with amounts of its columns from
-// their priors, t' is normal with the covariance v S (projected_hypotheses.h), so that the
-// distributions are simulated from the products of the recording itself: they need no table of
-// thresholds, and hold whatever the columns are. The smallest of the three tail probabilities is
-// compared with its own distribution, which makes the combined test exact (Tippett's method with
-// simulated dependence; Westfall & Young, Resampling-Based Multiple Testing, 1993).
+// The statistics are, where the space has an unknown smooth force, the log Bayes factor of that
+// force beside the hypothesis, the largest evidence (NamedEvidence) of any further effect or
+// nuisance beside it, and, where the noise is known, the variance of the residual. With noise, and
+// with amounts of its columns from their priors, t' is normal with the covariance v S
+// (projected_hypotheses.h), so that the distributions are simulated from the products of the
+// recording itself: they need no table of thresholds, and hold whatever the columns are. The
+// smallest of their tail probabilities is compared with its own distribution, which makes the
+// combined test exact (Tippett's method with simulated dependence; Westfall & Young, Resampling-
+// Based Multiple Testing, 1993).
 #ifndef LACUNA_DIAGNOSIS_ADEQUACY_H_
 #define LACUNA_DIAGNOSIS_ADEQUACY_H_
 

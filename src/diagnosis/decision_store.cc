@@ -135,10 +135,11 @@ void RemoveOthers(const Matrices& matrices, const std::filesystem::path& folder)
   std::set<std::filesystem::path> named;
   for (const auto& [hash, products] : matrices) named.insert(ProductsFile(hash));
   std::vector<std::filesystem::path> others;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (IsProductsFile(entry.path()) && !named.contains(entry.path().filename()))
-      others.push_back(entry.path());
   std::error_code ignored;
+  for (std::filesystem::directory_iterator at(folder, ignored), end; !ignored && at != end;
+       at.increment(ignored))
+    if (IsProductsFile(at->path()) && !named.contains(at->path().filename()))
+      others.push_back(at->path());
   for (const std::filesystem::path& other : others) std::filesystem::remove(other, ignored);
 }
 

@@ -59,12 +59,6 @@ RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise) {
   return {all.log_evidence, all.log_evidence - fitted, all.misfit};
 }
 
-HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking& ranking,
-                        const std::vector<std::string>& types, const NoiseLevel& noise) {
-  return SpaceBeside(hypothesis.misfit, hypothesis.misfit.jacobian, hypothesis.priors, ranking,
-                     types, noise);
-}
-
 namespace {
 
 // Sets what a refit says of the fitted frames and of all frames, from a hypothesis near both.

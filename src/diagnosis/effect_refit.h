@@ -57,11 +57,6 @@ struct RefitEvidence {
 };
 RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise);
 
-// The space of all other hypotheses beside refitted effects, with the columns that the ranking
-// found. `types`: the refitted effects.
-HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking& ranking,
-                        const std::vector<std::string>& types, const NoiseLevel& noise);
-
 // Whether a refit gained less than RefitThresholds::kept_share of the `predicted` first-order
 // evidence although more could be explained. `noise` is the squared residual expected of noise; a
 // refit that explains most of what exceeds it has found its minimum, and first order predicted too

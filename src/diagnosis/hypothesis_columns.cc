@@ -138,7 +138,12 @@ void ColumnsBuilder::AddNuisance(NuisanceCandidate candidate) {
     all_.untried.push_back(
         {candidate.card.name, fmt::format("{} has more than {} frames: thin them out with `every`",
                                           recording, kThresholds.nuisances.most_single_frames)});
-  if (!candidate.untried.empty()) all_.untried.push_back({candidate.card.name, candidate.untried});
+  // What holds for all recordings is said once.
+  const auto is_said = [&](const auto& other) {
+    return other.type == candidate.card.name && other.why == candidate.untried;
+  };
+  if (!candidate.untried.empty() && std::none_of(all_.untried.begin(), all_.untried.end(), is_said))
+    all_.untried.push_back({candidate.card.name, candidate.untried});
   if (candidate.columns.cols() == 0) return;
   all_.of_nuisance.push_back(Add(candidate.columns, candidate.priors));
   if (candidate.card.is_always_in_model) all_.always = Joined(all_.always, all_.of_nuisance.back());

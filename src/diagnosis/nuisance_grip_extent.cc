@@ -166,16 +166,20 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   const PredictionStudy study = WithListedNodes(at.problem);
   NuisanceCandidate candidate;
   candidate.columns.resize(at.misfit.residual.size(), 0);
+  bool applies = false;
   for (const GripMotions::Grip& grip : at.grips.grips) {
     const Eigen::VectorXi& gripped = NodesOf(at.problem, grip);
     if (!HasExtent(at.problem, gripped)) continue;
+    applies = true;
     const Eigen::VectorXd column = ColumnOf(gripped, study, at);
     if (column.size() == 0) continue;
     candidate.columns.conservativeResize(Eigen::NoChange, candidate.columns.cols() + 1);
     candidate.columns.rightCols(1) = column;
     candidate.priors.push_back({0, kThresholds.nuisances.shift, false});
   }
-  if (candidate.priors.empty()) return std::nullopt;
+  if (candidate.priors.empty() && applies)
+    candidate.untried = "no motion with a longer or a shorter grip could be predicted";
+  if (!applies) return std::nullopt;
   return candidate;
 }
 

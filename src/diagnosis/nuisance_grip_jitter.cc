@@ -14,6 +14,7 @@
 #include "diagnosis/thresholds.h"
 #include "experiment/grip_tracks.h"
 #include "geometry/rigid_fit.h"
+#include "prediction/reading_times.h"
 
 namespace lacuna {
 namespace {
@@ -74,13 +75,14 @@ struct FrameErrors {
 
 // The places of the markers that a grip follows, 3 × markers, rotated like the grip in each frame.
 // Where their middle is does not matter.
-std::vector<Eigen::Matrix3Xd> TurnedPlaces(const RecordingModel& model, size_t grip,
+std::vector<Eigen::Matrix3Xd> TurnedPlaces(const RecordingModel& model,
+                                           const Eigen::VectorXd& nuisance, size_t grip,
                                            const Eigen::Matrix3Xd& places,
                                            const std::vector<double>& times) {
-  const Grip& held = model.model().grips[grip];
+  const Grip held = model.PlacedModel(nuisance).grips[grip];
   const Eigen::Matrix3Xd at_rest = model.model().body->mesh.nodes(Eigen::all, held.nodes);
   std::vector<Eigen::Matrix3Xd> turned;
-  for (const double time : times)
+  for (const double time : Delayed(times, model.Delay(nuisance)))
     turned.push_back(FitRigidMotion(at_rest, held.motion(time)).motion.linear() * places);
   return turned;
 }
@@ -107,10 +109,11 @@ void AppendErrors(const GripMotions::Grip& own, const LinearisedMisfit::Part& po
   const RecordedGrip& grip = *RecordedAs(model.measured(), index);
   const double noise = at.problem.noise();
   const std::vector<double>& times = points.layout.times;
+  const Eigen::VectorXd nuisance = at.problem.NuisanceOf(points.recording, at.values);
   const std::vector<int> markers = MarkersOf(grip, model.measured());
   const Eigen::Matrix3Xd places = model.measured().markers.places(Eigen::all, markers);
   FrameErrors rigid{&points, markers, own.rigid, {}};
-  for (const Eigen::Matrix3Xd& turned : TurnedPlaces(model, index, places, times))
+  for (const Eigen::Matrix3Xd& turned : TurnedPlaces(model, nuisance, index, places, times))
     rigid.jitter.push_back(RigidJitter(turned, grip.deforms, noise));
   errors->push_back(std::move(rigid));
   if (!grip.deforms) return;

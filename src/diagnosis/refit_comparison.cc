@@ -37,8 +37,8 @@ void SetEvidence(const EffectRefit& with, const RefitComparison& comparison, Ran
   const RefitEvidence& before = comparison.before;
   const RefitEvidence after = EvidenceOf(with, comparison.noise);
   effect->predicts = Predicts(with, comparison.without, comparison.noise);
-  effect->fails_at_limit =
-      with.IsAtLimit() && IsContradicted(with, comparison.without, comparison.noise);
+  effect->fails_at_limit = with.unconverged.empty() && with.IsAtLimit() &&
+                           IsContradicted(with, comparison.without, comparison.noise);
   effect->removed.reset();
   effect->penalty_of_effects = SelectionPenalty(comparison.rivals);
   effect->evidence =

@@ -49,8 +49,8 @@ struct ParameterCard {
   Dimension dimension;        // dimension of the value, which is stored in SI units
   Bounds bounds = kAnyValue;  // the YAML check refuses values outside of these
   double null_value = 0;      // the value at which the effect vanishes, or kNoNullValue
-  double plausible_min = 0;   // range of plausible values for soft objects, SI; the larger of the
-  double plausible_max = 0;   // two absolute values is the scale of the prior
+  double plausible_min = 0;   // range of plausible values for soft objects, SI; its end that is
+  double plausible_max = 0;   // farther from the null value (or 0) is the scale of the prior
   // A stiffness or a stress inside the body, of which the range is plausible in a body with
   // kReferenceModulus; it grows in proportion to the body's Young's modulus (PlausibleIn()).
   bool of_modulus = false;

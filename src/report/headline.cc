@@ -229,11 +229,14 @@ double ProbabilityOfNoEffect(const DecisionRecord& decision) {
   });
 }
 
-// Whether the model has an effect of this type, of which the fit determines a parameter.
-bool IsFitted(const ReportedModel& model, const std::string& type) {
-  const auto& parameters = model.calibration.parameters;
-  return std::any_of(parameters.begin(), parameters.end(),
-                     [&](const auto& parameter) { return parameter.name.starts_with(type + "."); });
+// Whether the model has an effect of this type, with fitted or with given parameters.
+bool IsInModel(const ReportedModel& model, const std::string& type) {
+  const auto is_of_type = [&](const auto& parameter) {
+    return parameter.name.starts_with(type + ".") || parameter.name.starts_with(type + "#");
+  };
+  const CalibrationRecord& fit = model.calibration;
+  return std::any_of(fit.parameters.begin(), fit.parameters.end(), is_of_type) ||
+         std::any_of(fit.held.begin(), fit.held.end(), is_of_type);
 }
 
 // The effects that would have stayed hidden in the recordings at a considerable size, in a sentence
@@ -251,7 +254,7 @@ std::string HiddenSentence(const ReportedModel& model) {
           return size.detectable > kConsiderable * size.plausible;
         });
     if (is_hidden)
-      hidden.push_back((IsFitted(model, effect.type) ? "another " : "") +
+      hidden.push_back((IsInModel(model, effect.type) ? "another " : "") +
                        ShortTitle(diagnosis, effect.type));
   }
   if (hidden.empty()) return "";

@@ -39,8 +39,8 @@ std::string DescribeMistakes(const FittedReaction& reaction) {
     likely.emplace_back("with the opposite sign (`exerted_by`)");
   if (mistakes.factor && mistakes.offset)
     likely.push_back(
-        fmt::format("if it were {:.3g} times the {} plus an offset of {:.3g} {}, as where the load "
-                    "or the reading has another unit",
+        fmt::format("if it were {:.3g} times the {} plus an offset of {:.3g} {}, as if the load "
+                    "or the reading were in another unit",
                     *mistakes.factor, reaction.Quantity(), *mistakes.offset, reaction.Unit()));
   else if (mistakes.factor && *mistakes.factor > 0)
     likely.push_back(fmt::format("if it were {:.3g} times the {}, as in another unit",

@@ -91,7 +91,7 @@ std::string ShareNow(const PlanRecord& plan) {
 
 std::string Question(const PlanRecord& plan) {
   // Nuisances are part of the probability that no effect is missing.
-  const bool is_open = !IsAdequate(plan);
+  const bool is_open = !IsAdequate(plan) && plan.verdict != VerdictName(Verdict::kNoPower);
   const LeftNuisance* likelier = is_open ? MostProbableNuisance(plan) : nullptr;
   std::string text;
   if (likelier != nullptr)

@@ -181,8 +181,7 @@ std::vector<std::string> NotRefutedSentences(const DiagnosisRecord& diagnosis) {
       sentences.push_back(fmt::format(
           "With {0} the model fits better, but it predicts the held-out frames worse. {0} is not "
           "refuted: its size is at the limit of what is plausible. To decide, fit the model with "
-          "it "
-          "in a wider range (`lacuna add` writes the experiment), or from a better start.",
+          "it in a wider range (`lacuna add` writes the experiment), or from a better start.",
           effect.type));
   return sentences;
 }

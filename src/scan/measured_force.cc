@@ -13,8 +13,12 @@ namespace lacuna {
 namespace {
 
 // A component that is not named counts as 0. Where the table has a column with its usual name, that
-// may not have been meant.
+// may not have been meant, and where no column has a name, that cannot be told.
 void RefuseUnnamedComponents(const Config& item, const DelimitedTable& table) {
+  if (table.header.empty() && !(item.Has("x") && item.Has("y") && item.Has("z")))
+    item.Fail(item.Has("file") ? "file" : "from",
+              "columns without names do not tell whether the other components are among them: give "
+              "`x`, `y` and `z`, or a component in one direction with `along` and `value`");
   for (const std::string axis : {"x", "y", "z"}) {
     if (item.Has(axis)) continue;
     for (const std::string& usual : {"f" + axis, axis})

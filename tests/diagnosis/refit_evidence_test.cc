@@ -98,7 +98,8 @@ TEST(SpaceOfARefit, WeighsTheOtherEffectsBesideIt) {
                    {"there", "", there, {{0, 1, false}}},
                    {"a nuisance", "", there, {{0, 1, false}}, 0, true}};
   misfit.residual += 0.2 * there;
-  const HypothesisSpace space = SpaceOf(hypothesis, ranking, {"refitted"}, kCorrelated);
+  const HypothesisSpace space = SpaceBeside(hypothesis.misfit, hypothesis.misfit.jacobian,
+                                            hypothesis.priors, ranking, {"refitted"}, kCorrelated);
   const ProjectedHypotheses projected(space);
   const Eigen::VectorXd factors = projected.FactorsOfResidual();
   ASSERT_EQ(factors.size(), 3);

@@ -248,6 +248,9 @@ TEST(Headline, NamesEffectsThatWouldHaveStayedHidden) {
   model.calibration.parameters.emplace_back().name = "imitated.size";
   EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: another imitated could"));
   model.calibration.parameters.pop_back();
+  model.calibration.held = {{"imitated.size", "1", {0}}};
+  EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: another imitated could"));
+  model.calibration.held.clear();
   for (const char* title : {"one", "two", "three", "four"}) add(title, 20, 10);
   EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: imitated, one, two and 2 others could"));
 }
@@ -378,7 +381,7 @@ TEST(Headline, SaysThatAMeasuredForceIsMissedByFarMoreThanTheMarkers) {
   reaction.likely_mistakes = {9.81, -0.333, {}};
   EXPECT_THAT(Headline({model}).at(1),
               EndsWith("would fit if it were 9.81 times the force plus an offset of -0.333 N, as "
-                       "where the load or the reading has another unit."));
+                       "if the load or the reading were in another unit."));
   // Markers that are missed as well.
   model.errors.rms_over_sigma = 200;
   EXPECT_THAT(Headline({model}), SizeIs(2));

@@ -103,6 +103,9 @@ TEST_F(ForcesOfRecording, MayNotLeaveOpenWhichComponentsAreMeant) {
   folder_.Write("load.csv", "t,F,y\n0,4,1\n1,8,2\n");
   EXPECT_THAT(Error("file: load.csv, time: t, z: F"),
               HasSubstr("load.csv has a column \"y\", but `y` is not given"));
+  folder_.Write("numbers.csv", "0,4,1\n1,8,2\n");
+  EXPECT_THAT(Error("file: numbers.csv, time: 1, z: 2"),
+              HasSubstr("columns without names do not tell whether the other components"));
   EXPECT_THAT(Error("file: load.csv, time: t, z: F, along: [0, 0, 1], value: F"),
               HasSubstr("forces[0].along: the components x, y, z already have columns"));
   EXPECT_THAT(Error("file: load.csv, time: t, along: [0, 0, 0], value: F"),

@@ -448,6 +448,8 @@ test('a plan after an adequate model says that nothing is open', async () => {
   const text = await planText((plan) => Object.assign(plan, { verdict: 'adequate', no_effect: 0.91 }));
   assert.ok(text.includes('Nothing is open') && text.includes('91 %'));
   assert.ok(!text.includes('To be told apart'));
+  assert.ok((await planText((plan) => { plan.verdict = 'no power'; })).includes('could not show any effect'));
+  assert.ok((await planText((plan) => { plan.rivals.pop(); })).includes('or something else, is open'));
   const left = await planText((plan) => { plan.also_left = [{ nuisance: 'clock', title: 'a clock that is late', probability: 0.3 }]; });
   assert.ok(left.includes('a clock that is late (30 %)'));
 });

@@ -51,8 +51,10 @@ function question(plan) {
   const rivals = list(plan.rivals ?? [], (rival) => rival.of_diagnosis);
   if (plan.verdict === 'adequate')
     return `Nothing is open: the recordings show no missing effect (probability ${posterior(plan.no_effect)}). If one were there, these would be the most probable: ${rivals}.`;
+  if (plan.verdict === 'no power') return `These recordings could not show any effect. The plan tells which recording would best show ${rivals}.`;
+  const open = (plan.rivals ?? []).length === 1 ? `Whether ${rivals} is missing, or something else, is open.` : `To be told apart: ${rivals}.`;
   const left = list(plan.also_left ?? [], (nuisance) => nuisance.probability);
-  return `To be told apart: ${rivals}.${left ? ` The plan does not weigh errors of the measurement or of the discretisation, which could explain the recordings, too: ${left}.` : ''}`;
+  return `${open}${left ? ` The plan does not weigh errors of the measurement or of the discretisation, which could explain the recordings, too: ${left}.` : ''}`;
 }
 
 function block({ plan, label }) {
