@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/whiteness.h"
+#include "fit/prior_cost.h"
 #include "geometry/nearest.h"
 
 namespace lacuna {
@@ -40,14 +41,12 @@ void AddModelConflicts(const CalibrationProblem& problem, const Eigen::VectorXd&
   const std::vector<ModelParameter>& fitted = problem.study().fitted;
   for (size_t k = 0; k < fitted.size(); ++k) {
     const CalibratedParameter& prior = fitted[k].prior;
-    const double mean = PriorMeanOf(prior);
-    const double change = ToFree(prior, values[static_cast<Eigen::Index>(k)]) - ToFree(prior, mean);
-    const double deviations = std::abs(change) / prior.prior_deviation;
+    const double deviations = std::abs(FromPriorMean(prior, values[static_cast<Eigen::Index>(k)]));
     // A prior that the experiment gives has a mean (prediction_study_reader.cc).
     const bool is_default = std::isnan(prior.prior_mean);
     if (deviations > kConflict)
-      conflicts->emplace_back(
-          ModelParameterConflict{prior.name, fitted[k].unit, deviations, mean, is_default});
+      conflicts->emplace_back(ModelParameterConflict{prior.name, fitted[k].unit, deviations,
+                                                     PriorMeanOf(prior), is_default});
   }
 }
 

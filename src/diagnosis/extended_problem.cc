@@ -11,8 +11,8 @@
 #include "core/hash.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/thresholds.h"
-#include "fit/active_bounds.h"
 #include "fit/bounded_steps.h"
+#include "fit/prior_cost.h"
 
 namespace lacuna {
 namespace {
@@ -75,28 +75,6 @@ ResidualEvaluation FittedPart(const LinearisedMisfit& misfit) {
                                part.layout.count[static_cast<size_t>(row)] == 0;
   }
   return prediction;
-}
-
-// The quadratic model of a fit's cost about `at`, as a function of a step of the free values, from
-// a residual and its derivatives with respect to the parameters there.
-QuadraticCost CostAbout(const std::vector<CalibratedParameter>& parameters,
-                        const Eigen::VectorXd& at, const Eigen::VectorXd& residual,
-                        Eigen::MatrixXd columns) {
-  for (Eigen::Index k = 0; k < at.size(); ++k)
-    if (parameters[static_cast<size_t>(k)].log_scale) columns.col(k) *= at[k];
-  QuadraticCost model{0.5 * residual.squaredNorm(), columns.transpose() * residual,
-                      columns.transpose() * columns};
-  for (Eigen::Index k = 0; k < at.size(); ++k) {
-    const CalibratedParameter& parameter = parameters[static_cast<size_t>(k)];
-    const double deviation = parameter.prior_deviation;
-    if (!std::isfinite(deviation)) continue;
-    const double from_mean =
-        (ToFree(parameter, at[k]) - ToFree(parameter, PriorMeanOf(parameter))) / deviation;
-    model.cost += 0.5 * from_mean * from_mean;
-    model.gradient[k] += from_mean / deviation;
-    model.information(k, k) += 1 / (deviation * deviation);
-  }
-  return model;
 }
 
 // The null value of a parameter that makes the effect's size; nothing for another parameter.
@@ -266,9 +244,10 @@ FirstStep ExtendedProblem::FirstStepFrom(const Eigen::VectorXd& at,
                                          const LinearisedMisfit& misfit) const {
   const ResidualEvaluation there = FittedPart(misfit);
   const std::vector<CalibratedParameter> parameters = ParametersFrom(at, /*holds_effect=*/false);
+  Eigen::MatrixXd columns = nuisances_.OfDerivatives(there.jacobian.leftCols(at.size()));
+  DeriveByFreeValues(parameters, at, &columns);
   const QuadraticCost model =
-      CostAbout(parameters, at, nuisances_.OfResidual(there.residual),
-                nuisances_.OfDerivatives(there.jacobian.leftCols(at.size())));
+      CostAbout(parameters, at, nuisances_.OfResidual(there.residual), columns);
   const Eigen::VectorXd step = BoundedSteps(parameters).Step(model, at, kInfinity);
   return {model.cost, model.cost * model.GainOf(step)};
 }

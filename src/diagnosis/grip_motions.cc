@@ -26,9 +26,7 @@ struct HeldNodes {
   double Holds(int axis) const { return grip.axes.Has(axis) ? 1 : 0; }
 };
 
-bool AreAlike(const Grip& a, const Grip& b) {
-  return a.axes == b.axes && a.nodes.size() == b.nodes.size() && a.nodes == b.nodes;
-}
+bool AreAlike(const Grip& a, const Grip& b) { return a.axes == b.axes && HoldsExactly(a, b.nodes); }
 
 // The displacements (3n, m per unit of the direction) of the nodes by a motion of their grip, given
 // the forces that grips exert on the body (3n, N).
@@ -100,7 +98,6 @@ class MotionsBuilder {
 
  private:
   void FindGrips();
-  const Grip& First(const GripMotions::Grip& grip) const;
   // The grip of earlier recordings that is alike; a new one if there is none.
   GripMotions::Grip& GripLike(const Grip& held, size_t recording);
   bool Deforms(const GripMotions::Grip& grip) const;
@@ -131,14 +128,9 @@ void MotionsBuilder::FindGrips() {
   }
 }
 
-const Grip& MotionsBuilder::First(const GripMotions::Grip& grip) const {
-  const auto& [recording, index] = *grip.index_in.begin();
-  return problem_.models()[recording].model().grips[index];
-}
-
 GripMotions::Grip& MotionsBuilder::GripLike(const Grip& held, size_t recording) {
   for (GripMotions::Grip& known : motions_.grips)
-    if (!known.In(recording) && AreAlike(First(known), held)) return known;
+    if (!known.In(recording) && AreAlike(FirstOf(known, problem_), held)) return known;
   return motions_.grips.emplace_back();
 }
 
@@ -163,7 +155,7 @@ void MotionsBuilder::AddMotions(GripMotions::Grip* grip) {
   std::vector<MisfitDirection>& directions = motions_.directions;
   const auto next = [&] { return static_cast<Eigen::Index>(directions.size()); };
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
-  const Grip& held = First(*grip);
+  const Grip& held = FirstOf(*grip, problem_);
   grip->label = LabelOf(*grip);
   grip->force = std::make_shared<LargestNorm>();
   grip->moment = std::make_shared<LargestNorm>();
@@ -187,6 +179,15 @@ std::optional<size_t> GripMotions::Grip::In(size_t recording) const {
   const auto found = index_in.find(recording);
   if (found == index_in.end()) return std::nullopt;
   return found->second;
+}
+
+const Grip& FirstOf(const GripMotions::Grip& grip, const CalibrationProblem& problem) {
+  const auto& [recording, index] = *grip.index_in.begin();
+  return problem.models()[recording].model().grips[index];
+}
+
+bool HoldsExactly(const Grip& grip, const Eigen::VectorXi& nodes) {
+  return grip.nodes.size() == nodes.size() && grip.nodes == nodes;
 }
 
 GripMotions MakeGripMotions(const CalibrationProblem& problem) {

@@ -62,6 +62,11 @@ struct GripMotions {
   std::vector<MisfitDirection> directions;
 };
 
+// The grip as the first recording that has it holds it.
+const Grip& FirstOf(const GripMotions::Grip& grip, const CalibrationProblem& problem);
+// Whether a grip holds these nodes and no others.
+bool HoldsExactly(const Grip& grip, const Eigen::VectorXi& nodes);
+
 // The motions of the grips of all fitted recordings.
 GripMotions MakeGripMotions(const CalibrationProblem& problem);
 

@@ -58,16 +58,6 @@ Eigen::Vector3d Inwards(const Eigen::Matrix3Xd& nodes, const Eigen::VectorXi& gr
   return nodes.rowwise().mean() - nodes(Eigen::all, gripped).rowwise().mean();
 }
 
-// The nodes that a grip holds.
-const Eigen::VectorXi& NodesOf(const CalibrationProblem& problem, const GripMotions::Grip& grip) {
-  const auto& [recording, index] = *grip.index_in.begin();
-  return problem.models()[recording].model().grips[index].nodes;
-}
-
-bool HoldsExactly(const Grip& grip, const Eigen::VectorXi& nodes) {
-  return grip.nodes.size() == nodes.size() && grip.nodes == nodes;
-}
-
 // Whether a model holds these nodes together along all axes, and not where a scan shows them: a
 // grip that follows a scan would be registered anew with the changed mesh.
 bool HoldsFirmly(const RecordingModel& model, const Eigen::VectorXi& nodes) {
@@ -168,7 +158,7 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   candidate.columns.resize(at.misfit.residual.size(), 0);
   bool applies = false;
   for (const GripMotions::Grip& grip : at.grips.grips) {
-    const Eigen::VectorXi& gripped = NodesOf(at.problem, grip);
+    const Eigen::VectorXi& gripped = FirstOf(grip, at.problem).nodes;
     if (!HasExtent(at.problem, gripped)) continue;
     applies = true;
     const Eigen::VectorXd column = ColumnOf(gripped, study, at);

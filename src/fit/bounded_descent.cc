@@ -12,6 +12,7 @@
 
 #include "fit/active_bounds.h"
 #include "fit/bounded_steps.h"
+#include "fit/prior_cost.h"
 
 namespace lacuna {
 namespace {
@@ -206,19 +207,7 @@ class BoundedDescent {
 
   // ½ ‖r‖² plus the priors; infinite if the prediction failed.
   double CostOf(const ResidualEvaluation& prediction, const Eigen::VectorXd& values) const {
-    return prediction.usable ? CostOf(prediction.residual, values) : kInfinity;
-  }
-  double CostOf(const Eigen::VectorXd& residual, const Eigen::VectorXd& values) const {
-    double cost = residual.squaredNorm();
-    for (Eigen::Index k = 0; k < count_; ++k) cost += std::pow(FromPrior(values, k), 2);
-    return 0.5 * cost;
-  }
-
-  // The distance from the mean of the prior in units of its deviation; 0 without a prior.
-  double FromPrior(const Eigen::VectorXd& values, Eigen::Index k) const {
-    const CalibratedParameter& at = parameter(k);
-    if (!std::isfinite(at.prior_deviation)) return 0;
-    return (ToFree(at, values[k]) - ToFree(at, PriorMeanOf(at))) / at.prior_deviation;
+    return prediction.usable ? CostAt(parameters_, values, prediction.residual) : kInfinity;
   }
 
   // Predicts the best parameters again, with derivatives in place of secants. If that fails,
@@ -237,8 +226,7 @@ class BoundedDescent {
 
   void TakeDerivatives() {
     columns_ = end_.prediction.jacobian;
-    for (Eigen::Index k = 0; k < count_; ++k)
-      if (parameter(k).log_scale) columns_.col(k) *= end_.parameters[k];
+    DeriveByFreeValues(parameters_, end_.parameters, &columns_);
     is_exact_ = true;
     differentiated_ = {end_.parameters, end_.prediction};
   }
@@ -261,15 +249,7 @@ class BoundedDescent {
 
   // The cost about the best parameters as a quadratic function of a step of φ.
   QuadraticCost Model() const {
-    QuadraticCost model{cost_, columns_.transpose() * end_.prediction.residual,
-                        columns_.transpose() * columns_};
-    for (Eigen::Index k = 0; k < count_; ++k) {
-      const double deviation = parameter(k).prior_deviation;
-      if (!std::isfinite(deviation)) continue;
-      model.gradient[k] += FromPrior(end_.parameters, k) / deviation;
-      model.information(k, k) += 1 / (deviation * deviation);
-    }
-    return model;
+    return CostAbout(parameters_, end_.parameters, end_.prediction.residual, columns_);
   }
 
   Eigen::VectorXd FullStep(const QuadraticCost& model) const {
@@ -310,7 +290,7 @@ class BoundedDescent {
       const Eigen::VectorXd expected =
           residual + scale * change + scale * scale * remaining_curvature;
       trial.predicted_gain =
-          1 - CostOf(expected, steps_.Moved(trial.step, end_.parameters)) / cost_;
+          1 - CostAt(parameters_, steps_.Moved(trial.step, end_.parameters), expected) / cost_;
       if (!best || trial.predicted_gain > best->predicted_gain) best = std::move(trial);
     }
     return best;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "fit/bounded_descent.h"
+#include "fit/prior_cost.h"
 
 namespace lacuna {
 namespace {
@@ -214,8 +215,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
   calibration.autocorrelation = AutocorrelationOf(last);
   if (count > 0) {
     Eigen::MatrixXd J = last.jacobian;
-    for (int k = 0; k < count; ++k)
-      if (parameters[k].log_scale) J.col(k) *= calibration.parameters[k];
+    DeriveByFreeValues(parameters, calibration.parameters, &J);
     Estimate(parameters, last, J, &calibration);
   }
   return calibration;

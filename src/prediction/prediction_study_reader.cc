@@ -42,8 +42,8 @@ void RequireHeldObject(const Config& config, const EffectList& of_study,
 // measured force may depend on the model even so. `config` is the entry of the recording.
 void RequireFreePoints(const Config& config, const PredictedRecording& item) {
   const RecordedObject& object = item.recording.object;
-  if (item.ShowsScans() || !object.reactions.empty()) return;
   const Eigen::Matrix3Xd& places = item.recording.markers.places;
+  if (item.ShowsScans() || places.cols() == 0 || !object.reactions.empty()) return;
   const auto require_free = [&](const Region& region, AxisSet axes) {
     if (!axes.IsAll()) return;
     for (const auto& place : places.colwise())
