@@ -93,7 +93,7 @@ void RequirePlaces(const Config& config, const Recording& recording) {
                                    fmt::join(placed, ", "));
   config.Fail("recording",
               fmt::format("the place of {} on the undeformed object is not known: {} needs "
-                          "`marker_places` for {}{}",
+                          "`marker_places` (or `marker_places_file`) for {}{}",
                           fmt::join(missing, ", "), recording.file.string(),
                           missing.size() == 1 ? "it" : "them", other));
 }

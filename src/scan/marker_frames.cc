@@ -15,6 +15,7 @@
 #include "core/quoted_text.h"
 #include "scan/frame_points.h"
 #include "scan/marker_files.h"
+#include "scan/marker_place_table.h"
 #include "scan/time_series.h"
 #include "scan/track_doubts.h"
 #include "scan/yaml_format.h"
@@ -42,9 +43,14 @@ MarkerColumns ReadMarkerColumns(const Config& frames) {
   return columns;
 }
 
-Eigen::Matrix3Xd ReadPlaces(const Config& frames, const std::vector<std::string>& names) {
-  Eigen::Matrix3Xd places =
-      Eigen::Matrix3Xd::Constant(3, names.size(), std::numeric_limits<double>::quiet_NaN());
+// A place per marker, m; NaN where `frames` gives none.
+Eigen::Matrix3Xd NoPlaces(size_t markers) {
+  return Eigen::Matrix3Xd::Constant(3, static_cast<Eigen::Index>(markers),
+                                    std::numeric_limits<double>::quiet_NaN());
+}
+
+Eigen::Matrix3Xd ReadListedPlaces(const Config& frames, const std::vector<std::string>& names) {
+  Eigen::Matrix3Xd places = NoPlaces(names.size());
   for (const Config& item : frames.Items("marker_places")) {
     const std::string name = item.Text("name");
     const auto found = std::find(names.begin(), names.end(), name);
@@ -53,6 +59,30 @@ Eigen::Matrix3Xd ReadPlaces(const Config& frames, const std::vector<std::string>
     if (place.allFinite()) item.Fail("name", "is listed twice");
     place = item.Vector("position", kLength);
   }
+  return places;
+}
+
+// The places of a table, of which the numbers are multiples of `length`. Rows of other markers are
+// not needed: one table may serve several recordings.
+Eigen::Matrix3Xd ReadPlaceTable(const std::filesystem::path& file, double length,
+                                const std::vector<std::string>& names) {
+  Eigen::Matrix3Xd places = NoPlaces(names.size());
+  bool has_any = false;
+  for (const MarkerPlace& row : ReadMarkerPlaces(file)) {
+    const auto found = std::find(names.begin(), names.end(), row.name);
+    if (found == names.end()) continue;
+    auto place = places.col(found - names.begin());
+    if (place.allFinite())
+      throw InputError({file.string(), row.line, 1}, fmt::format("{} is listed twice", row.name));
+    if (!row.position.allFinite())
+      throw InputError({file.string(), row.line, 1},
+                       fmt::format("the place of {} is incomplete", row.name));
+    place = length * row.position;
+    has_any = true;
+  }
+  if (!has_any)
+    throw InputError({file.string()},
+                     fmt::format("has no place of any of the markers {}", FirstFew(names)));
   return places;
 }
 
@@ -131,7 +161,15 @@ void ReadSource(const Config& frames, const DataLocation& data, MarkerFrames* so
   for (auto* doubt_of : {DoubtOfZeros, DoubtOfUnseen})
     if (std::string doubt = doubt_of(source->tracks, source->file); !doubt.empty())
       warnings->push_back(std::move(doubt));
-  source->places = ReadPlaces(frames, source->tracks.names);
+  if (frames.Has("marker_places_file")) {
+    if (frames.Has("marker_places"))
+      frames.Fail("marker_places_file", "give this or `marker_places`, not both");
+    source->places_file = data.folder / frames.Text("marker_places_file");
+    source->places =
+        ReadPlaceTable(source->places_file, LengthOf(data.length_unit), source->tracks.names);
+  } else {
+    source->places = ReadListedPlaces(frames, source->tracks.names);
+  }
   const std::string& unit = source->tracks.length_unit;
   if (!unit.empty() && unit != data.length_unit) {
     warnings->push_back(fmt::format("{} says that its lengths are in {}; recording.yaml says {}",
@@ -141,6 +179,11 @@ void ReadSource(const Config& frames, const DataLocation& data, MarkerFrames* so
 
 std::vector<std::string> DoubtsOfFirstFrame(const Frame&, const MarkerFrames& source) {
   return DoubtsOfTracks(source.tracks, source.file);
+}
+
+std::vector<std::filesystem::path> AllFiles(const MarkerFrames& source) {
+  if (source.places_file.empty()) return {source.file};
+  return {source.file, source.places_file};
 }
 
 std::vector<double> TimesInFiles(const MarkerFrames& source) {

@@ -25,10 +25,11 @@ struct MarkerFrames {
   static constexpr const char* kTitle = "marker tracks";
 
   std::filesystem::path file;
-  Similarity world_from_file;  // its length unit included
-  MarkerTracks tracks;         // all frames as in the file until KeepFrames; then those that were
-                               // chosen, in m and in the world frame
-  Eigen::Matrix3Xd places;     // 3 × markers, m, on the undeformed object; NaN where not given
+  std::filesystem::path places_file;  // table of the places; empty: recording.yaml lists them
+  Similarity world_from_file;         // its length unit included
+  MarkerTracks tracks;      // all frames as in the file until KeepFrames; then those that were
+                            // chosen, in m and in the world frame
+  Eigen::Matrix3Xd places;  // 3 × markers, m, on the undeformed object; NaN where not given
 };
 
 // Warns when the file gives another length unit than recording.yaml, and of markers at exactly
@@ -39,6 +40,7 @@ void ReadSource(const Config& frames, const DataLocation& data, MarkerFrames* so
 void KeepFrames(const std::vector<int>& chosen, MarkerFrames* source);
 // Row i of the frame is marker i. Markers that were not seen are dropped.
 void LoadPoints(const MarkerFrames& source, Frame* frame);
+std::vector<std::filesystem::path> AllFiles(const MarkerFrames& source);
 std::vector<double> TimesInFiles(const MarkerFrames& source);
 // About the tracks in all frames (track_doubts.h).
 std::vector<std::string> DoubtsOfFirstFrame(const Frame& first, const MarkerFrames& source);
@@ -48,9 +50,6 @@ std::vector<InfoLine> DescribeSource(const MarkerFrames& source);
 
 inline size_t CountFrames(const MarkerFrames& source) { return source.tracks.positions.size(); }
 inline std::vector<std::filesystem::path> FilesOfFrame(const MarkerFrames& source, int) {
-  return {source.file};
-}
-inline std::vector<std::filesystem::path> AllFiles(const MarkerFrames& source) {
   return {source.file};
 }
 inline std::vector<std::filesystem::path> FilesWithHeaders(const MarkerFrames&) { return {}; }

@@ -3,45 +3,10 @@
 #include <fmt/format.h>
 
 #include "core/quoted_text.h"
-#include "scan/component_columns.h"
-#include "scan/delimited_table.h"
 #include "scan/time_series.h"
 #include "scan/yaml_format.h"
 
 namespace lacuna {
-
-namespace {
-
-// A component that is not named counts as 0. Where the table has a column with its usual name, that
-// may not have been meant, and where no column has a name, that cannot be told.
-void RefuseUnnamedComponents(const Config& item, const DelimitedTable& table) {
-  if (table.header.empty() && !(item.Has("x") && item.Has("y") && item.Has("z")))
-    item.Fail(item.Has("file") ? "file" : "from",
-              "columns without names do not tell whether the other components are among them: give "
-              "`x`, `y` and `z`, or a component in one direction with `along` and `value`");
-  for (const std::string axis : {"x", "y", "z"}) {
-    if (item.Has(axis)) continue;
-    for (const std::string& usual : {"f" + axis, axis})
-      if (FindColumn(table, usual))
-        item.Fail("file", fmt::format("{} has a column \"{}\", but `{}` is not given: name it with "
-                                      "`{}`, or give a component in one direction with `along` and "
-                                      "`value`",
-                                      table.file.string(), usual, axis, axis));
-  }
-}
-
-// 3 × k, N: the components that the item names, or all three in columns with their usual names.
-TimeSeries ReadForceSeries(const Config& item, const DataLocation& data, const FrameData& frames) {
-  const ColumnUnit unit = ReadColumnUnit(item, "unit", kForce, "N");
-  if (!NamesComponents(item)) return ReadTimeSeries(item, data, frames, unit, Rows::kMeasured);
-  const ComponentColumns components = ReadComponentColumns(item);
-  TimeSeries series = ReadColumns(item, data, frames, components.columns, unit, Rows::kMeasured);
-  if (!item.Has("along")) RefuseUnnamedComponents(item, series.table);
-  series.values = Eigen::MatrixXd(components.directions * series.values);
-  return series;
-}
-
-}  // namespace
 
 Eigen::Vector3d ForceAt(const MeasuredForce& force, double time) {
   return InterpolateLinearly(force.times, force.forces, time);
@@ -61,7 +26,8 @@ std::vector<MeasuredForce> ReadForces(const Config& config, const DataLocation& 
       force.forces = item.Vector("constant", kForce);
       force.times = Eigen::VectorXd::Constant(1, first_time);
     } else {
-      const TimeSeries series = ReadForceSeries(item, data, frames);
+      const TimeSeries series = ReadVectorSeries(
+          item, data, frames, ReadColumnUnit(item, "unit", kForce, "N"), Rows::kMeasured);
       force.file = series.table.file;
       force.times = series.times;
       force.forces = series.values;

@@ -30,7 +30,7 @@ Eigen::Vector3d ForceAt(const MeasuredForce& force, double time);
 // Reads the items of `forces`: each either `constant: [..]`, or `file` (or `from: headers`) with
 // the components of component_columns.h, of which those that are not named are 0, and the units of
 // time_series.h; and optionally `name` and `region`. Without a named component, all three are read
-// from columns with their usual names (ReadTimeSeries). `frames` are all frames in the files; a
+// from columns with their usual names (ReadVectorSeries). `frames` are all frames in the files; a
 // constant force gets `first_time` (s) as its only time. Throws InputError (file, line, column and
 // field), also where a component is not named although the table has a column with its usual name.
 std::vector<MeasuredForce> ReadForces(const Config& config, const DataLocation& data,

@@ -65,7 +65,7 @@ std::vector<std::string> NamesOfColumns(const DelimitedTable& table,
 void ReadPath(const Config& path, const DataLocation& data, const FrameData& frames,
               RecordedGrip* grip) {
   const ColumnUnit unit = ReadColumnUnit(path, "length_unit", kLength, data.length_unit);
-  const TimeSeries series = ReadTimeSeries(path, data, frames, unit, Rows::kAll);
+  const TimeSeries series = ReadVectorSeries(path, data, frames, unit, Rows::kAll);
   grip->motion = GripMotion::kGiven;
   grip->file = series.table.file;
   grip->times = series.times;

@@ -29,7 +29,10 @@ struct Recording {
   FrameSource frames;
   std::vector<double> times;         // s, ascending, one per frame
   std::filesystem::path times_file;  // empty when the times do not have a file of their own
-  Eigen::Index row_count = 0;        // rows of the first frame; if tracked, of every frame
+  // m, the diagonal of the bounding box of the reference shape or, where that is the first frame,
+  // of the points of that frame.
+  double size = 0;
+  Eigen::Index row_count = 0;  // rows of the first frame; if tracked, of every frame
   // The triangles of the first frame, if its points are tracked: the rows of their corners,
   // ascending, in ascending order.
   std::vector<std::array<int, 3>> faces;

@@ -69,7 +69,7 @@ void WarnOfReferenceSize(const Frame& first, Recording* recording) {
   constexpr double kFactor = 50;
   const ReferenceShape& reference = recording->reference;
   if (reference.source == ReferenceSource::kFirstFrame || first.cloud.Size() < 2) return;
-  const double size = ReferenceBox(reference).diagonal().norm();
+  const double size = recording->size;
   const double frame_size = BoundingBoxDiagonal(first.cloud.points);
   if (size < kFactor * frame_size && frame_size < kFactor * size) return;
   recording->warnings.push_back(
@@ -78,15 +78,13 @@ void WarnOfReferenceSize(const Frame& first, Recording* recording) {
                   size, frame_size));
 }
 
-void WarnOfJumps(const Frame& first, Recording* recording) {
+void WarnOfJumps(Recording* recording) {
   const std::vector<RecordedGrip>& grips = recording->object.grips;
   if (std::none_of(grips.begin(), grips.end(),
                    [](const RecordedGrip& grip) { return grip.motion == GripMotion::kGiven; }))
     return;
-  const double size = recording->reference.source == ReferenceSource::kFirstFrame
-                          ? BoundingBoxDiagonal(first.cloud.points)
-                          : ReferenceBox(recording->reference).diagonal().norm();
-  for (std::string& doubt : DoubtsOfJumps(recording->object, size, recording->times.back()))
+  for (std::string& doubt :
+       DoubtsOfJumps(recording->object, recording->size, recording->times.back()))
     recording->warnings.push_back(std::move(doubt));
 }
 
@@ -124,6 +122,9 @@ void UseFirstFrame(Recording* recording) {
       recording->frames);
   if (is_refined) first = LoadFrame(*recording, 0);
   recording->row_count = first.row_count;
+  recording->size = recording->reference.source == ReferenceSource::kFirstFrame
+                        ? BoundingBoxDiagonal(first.cloud.points)
+                        : ReferenceBox(recording->reference).diagonal().norm();
   if (HasTrackedPoints(*recording)) recording->faces = FacesByRow(first);
   const auto add = [recording](const std::vector<std::string>& doubts) {
     recording->warnings.insert(recording->warnings.end(), doubts.begin(), doubts.end());
@@ -134,7 +135,7 @@ void UseFirstFrame(Recording* recording) {
                  recording->frames));
   WarnOfFrameSize(first, recording);
   WarnOfReferenceSize(first, recording);
-  WarnOfJumps(first, recording);
+  WarnOfJumps(recording);
 }
 
 // Reads all but the frames; for some kinds of frames these, too.

@@ -12,6 +12,7 @@
 #include "core/npy.h"
 #include "core/quantity.h"
 #include "scan/column_units.h"
+#include "scan/component_columns.h"
 #include "scan/table_header.h"
 
 namespace lacuna {
@@ -138,11 +139,10 @@ void CheckRows(const Config& config, const TimeSeries& series, Rows rows) {
   }
 }
 
-// The name of the column of one component, or its number in a table without names.
+// The usual name of the column of one component, or its number in a table without names.
 std::string ComponentIn(const Config& config, const DelimitedTable& table, int axis,
                         const Dimension& dimension) {
   const std::string key(1, "xyz"[axis]);
-  if (config.Has(key)) return config.Text(key);
   std::string name = std::to_string(axis + 1);
   if (!table.header.empty()) {
     name = dimension.SameAs(kForce) && FindColumn(table, "f" + key) ? "f" + key : key;
@@ -152,6 +152,24 @@ std::string ComponentIn(const Config& config, const DelimitedTable& table, int a
                                       table.file.string(), name, fmt::join(table.header, ", ")));
   }
   return config.Text(key, name);
+}
+
+// A component that is not named counts as 0. Where the table has a column with its usual name, that
+// may not have been meant, and where no column has a name, that cannot be told.
+void RefuseUnnamedComponents(const Config& item, const DelimitedTable& table) {
+  if (table.header.empty() && !(item.Has("x") && item.Has("y") && item.Has("z")))
+    item.Fail(item.Has("file") ? "file" : "from",
+              "columns without names do not tell whether the other components are among them: give "
+              "`x`, `y` and `z`, or a component in one direction with `along` and `value`");
+  for (const std::string axis : {"x", "y", "z"}) {
+    if (item.Has(axis)) continue;
+    for (const std::string& usual : {"f" + axis, axis})
+      if (FindColumn(table, usual))
+        item.Fail("file", fmt::format("{} has a column \"{}\", but `{}` is not given: name it with "
+                                      "`{}`, or give a component in one direction with `along` and "
+                                      "`value`",
+                                      table.file.string(), usual, axis, axis));
+  }
 }
 
 TimeSeries SeriesOf(const Config& config, DelimitedTable table, const FrameData& frames,
@@ -201,8 +219,15 @@ Eigen::MatrixXd ColumnsOf(const DelimitedTable& table, const std::vector<std::st
   return columns;
 }
 
-TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data, const FrameData& frames,
-                          const ColumnUnit& unit, Rows rows) {
+TimeSeries ReadVectorSeries(const Config& config, const DataLocation& data, const FrameData& frames,
+                            const ColumnUnit& unit, Rows rows) {
+  if (NamesComponents(config)) {
+    const ComponentColumns components = ReadComponentColumns(config);
+    TimeSeries series = ReadColumns(config, data, frames, components.columns, unit, rows);
+    if (!config.Has("along")) RefuseUnnamedComponents(config, series.table);
+    series.values = Eigen::MatrixXd(components.directions * series.values);
+    return series;
+  }
   if (config.Has("from"))
     return ReadFromHeaders(config, frames, {config.Text("x"), config.Text("y"), config.Text("z")},
                            unit);

@@ -42,10 +42,13 @@ enum class Rows { kAll, kMeasured };
 TimeSeries ReadColumns(const Config& config, const DataLocation& data, const FrameData& frames,
                        const std::vector<std::string>& names, const ColumnUnit& unit, Rows rows);
 
-// ReadColumns() for the components of a vector, the columns named by `x`, `y`, `z`. By default they
-// are called fx, fy, fz, of a force, or x, y, z; those of a table without names are 1, 2, 3.
-TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data, const FrameData& frames,
-                          const ColumnUnit& unit, Rows rows);
+// ReadColumns() for a vector, 3 × rows: the components that `x`, `y`, `z` name, or the one along
+// `along` in the column `value` (component_columns.h); the others are 0. Where none is named, the
+// columns are called fx, fy, fz, of a force, or x, y, z; those of a table without names are 1,
+// 2, 3. Throws InputError, too, where a component that is not named may be meant, since the table
+// has a column with its usual name or no names at all.
+TimeSeries ReadVectorSeries(const Config& config, const DataLocation& data, const FrameData& frames,
+                            const ColumnUnit& unit, Rows rows);
 
 // The SI value of one of the unit at `key`, e.g. 1e-3 for "mm".
 double ReadUnit(const Config& config, const std::string& key, const Dimension& dimension,

@@ -33,7 +33,8 @@ TEST_F(ReadingAPredictionStudy, RefusesMarkersWithoutAShape) {
   EXPECT_THAT(
       MessageAfterInRecording({{"    - {name: m3,", "    #- {name: m3,"}}),
       ContainsRegex("recordings\\[0\\].recording: the place of m3 on the undeformed object is "
-                    "not known: .*`marker_places` for it, or `markers: \\[m0, m1, m2, m4"));
+                    "not known: .*`marker_places` .or `marker_places_file`. for it, or `markers: "
+                    "\\[m0, m1, m2, m4"));
 }
 
 TEST_F(ReadingAPredictionStudy, NamesTheEntryOfAnAbsentRecording) {

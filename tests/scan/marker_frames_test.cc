@@ -12,6 +12,7 @@
 namespace lacuna {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -50,6 +51,36 @@ TEST_F(RecordingTest, LoadsMarkersWithGapsAndFollowsThem) {
   folder_.Write("m.csv", "t,a_x,a_y,a_z,b_x,b_y,b_z\n0.5,0,0,0,50,0,0\n0.6,0,1e300,0,0,0,0\n");
   EXPECT_THAT(LoadError(Yaml(frames, reference)),
               HasSubstr("m.csv: frame 1: marker a is 1e+297 m away"));
+}
+
+TEST_F(RecordingTest, ReadsThePlacesOfMarkersFromATable) {
+  folder_.Write("m.csv", "t,a_x,a_y,a_z,b_x,b_y,b_z\n0.5,0,0,0,50,0,0\n0.6,1,0,0,50,1,0\n");
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  const std::string frames =
+      "  {kind: markers, file: m.csv, columns: {time: t}, markers: [b],\n"
+      "   marker_places_file: places.csv}\n";
+  const std::string reference = "reference: {from: mesh, file: box.ply, length_unit: m}\n";
+  const auto error = [&](const std::string& table) {
+    folder_.Write("places.csv", table);
+    return LoadError(Yaml(frames, reference));
+  };
+  folder_.Write("places.csv",
+                "\"Name\";Z;X;Y;glue\n# of the drawing\nb;3,5;1;-2;yes\n\nc;0;0;0;\n");
+  const Recording recording = Load(Yaml(frames, reference));
+  EXPECT_TRUE(recording.markers.places.isApprox(Eigen::Vector3d(1e-3, -2e-3, 3.5e-3), 1e-12))
+      << recording.markers.places;
+  EXPECT_THAT(recording.files, Contains(StateOf(folder_.Path() / "places.csv")));
+
+  EXPECT_THAT(error("name,x,y\nb,1,2\n"), HasSubstr("places.csv:1:1: has no column \"z\""));
+  EXPECT_THAT(error("name,x,y,z\n"), HasSubstr("places.csv: has no row"));
+  EXPECT_THAT(error("name,x,y,z\nb,1,2\n"), HasSubstr("places.csv:2:1: has 3 entries"));
+  EXPECT_THAT(error("name,x,y,z\nb,1,left,2\n"), HasSubstr("places.csv:2:5: got \"left\""));
+  EXPECT_THAT(error("name,x,y,z\nb,1,,2\n"), HasSubstr("places.csv:2:1: the place of b is incom"));
+  EXPECT_THAT(error("name,x,y,z\nb,1,0,2\nb,1,0,2\n"), HasSubstr(":3:1: b is listed twice"));
+  EXPECT_THAT(error("name,x,y,z\nB1,1,0,2\n"), HasSubstr("has no place of any of the markers b"));
+  std::string both = frames;
+  both.insert(both.find("marker_places_file"), "marker_places: [], ");
+  EXPECT_THAT(LoadError(Yaml(both, reference)), HasSubstr("give this or `marker_places`"));
 }
 
 TEST_F(RecordingTest, NamesMarkersThatNoFrameShows) {

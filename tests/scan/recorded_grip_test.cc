@@ -117,6 +117,27 @@ TEST_F(RecordingTest, APathHasItsOwnColumns) {
   EXPECT_EQ(recording.object.grips.at(0).displacements.col(1), Eigen::Vector3d(7, 8, 9));
 }
 
+// A testing machine measures one displacement.
+TEST_F(RecordingTest, APathMayHaveOneComponent) {
+  WriteClouds(2);
+  folder_.Write("machine.csv", "t,F,crosshead\n0,5,1\n1,6,3\n");
+  const auto yaml = [](const std::string& component) {
+    return Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz}\n",
+                "gripped: [{nodes: [1], path: {file: machine.csv, time: t, length_unit: mm, " +
+                    component + "}}]\n");
+  };
+  const auto moved = [&](const std::string& component) {
+    return Eigen::Vector3d(Load(yaml(component)).object.grips.at(0).displacements.col(1));
+  };
+  EXPECT_LT((moved("z: crosshead") - Eigen::Vector3d(0, 0, 2e-3)).norm(), 1e-15);
+  EXPECT_LT(
+      (moved("along: [0, 3, 4], value: crosshead") - Eigen::Vector3d(0, 1.2e-3, 1.6e-3)).norm(),
+      1e-15);
+  folder_.Write("machine.csv", "t,x,crosshead\n0,5,1\n1,6,3\n");
+  EXPECT_THAT(LoadError(yaml("z: crosshead")),
+              HasSubstr("has a column \"x\", but `x` is not given"));
+}
+
 TEST_F(RecordingTest, PartsMayBeHeldAlongSomeAxesOnly) {
   WriteClouds(2);
   folder_.Write("plate.csv", "t,x,y,z,rx,ry,rz\n0,0,0,0,0,0,0\n1,0,0,-2,0,0,1\n");
