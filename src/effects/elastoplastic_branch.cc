@@ -3,8 +3,8 @@
 // kinematically, has a hysteresis loop at any speed and a permanent set; several branches of
 // different yield strains make Masing's model of a smooth loop.
 //
-//   S = 2μ (dev E − E_p),  2μ = 2m/3,  ‖dev E − E_p‖ ≤ √(3/2) ε_y,
-// J2 plasticity in (S, E), additive in the strain (Green & Naghdi 1965), for the reasons in
+//   Q = 2μ (dev E − E_p),  2μ = 2m/3,  ‖dev E − E_p‖ ≤ √(3/2) ε_y,
+// J2 plasticity in (Q, E), additive in the strain (Green & Naghdi 1965), for the reasons in
 // fem/memory_branch.h. The branch resists changes of shape only; where volume is kept, m is its
 // Young's modulus 3μ, ε_y the stretch at which a bar yields and m ε_y its yield stress. Yield is
 // stated as a strain so that E_p does not depend on m.

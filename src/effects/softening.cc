@@ -2,13 +2,13 @@
 // stiffer on its first stretch than on later ones up to the same stretch, at any speed, without
 // permanent set.
 //
-//   S = m g(κ) C : E,   g = 1/(1 + κ/κ₀),   κ = largest √(E : C : E) so far, the present included,
-// with Hooke's moduli C for Young's modulus 1: damage driven by the energy norm of the strain (Simo
-// 1987). On first loading the stress m κ/(1 + κ/κ₀) still rises, towards m κ₀; so the incremental
-// potential is convex and strain does not localise in single elements, as it would if g decreased
-// faster than 1/κ. The elasticity law of the body is the limit of complete softening: the branch
-// adds a stiffness that decreases to zero and never reduces that of the body. It is independent of
-// the rate, and statics is a step like any other.
+//   Q = m g(κ) C : B,   g = 1/(1 + κ/κ₀),   κ = largest √(B : C : B) so far, the present included,
+// with Hooke's moduli C for Young's modulus 1 and the strain B of fem/branch_strain.h: damage
+// driven by the energy norm of the strain (Simo 1987). On first loading the stress m κ/(1 + κ/κ₀)
+// still rises, towards m κ₀; so the incremental potential is convex and strain does not localise in
+// single elements, as it would if g decreased faster than 1/κ. The elasticity law of the body is
+// the limit of complete softening: the branch adds a stiffness that decreases to zero and never
+// reduces that of the body. It is independent of the rate, and statics is a step like any other.
 #include <algorithm>
 #include <cmath>
 
@@ -89,9 +89,11 @@ class SofteningLaw {
         .family = EffectFamily::kElasticity,
         .title = "Softening by the largest past strain (Mullins effect)",
         .equation =
-            "P = F S,  S = (λ (tr E) I + 2μ E)/(1 + κ/κ₀),  κ = largest √(E:C:E) so far (in a "
-            "bar: the largest strain),  E = ½ (FᵀF − I),  λ, μ from modulus m and Poisson "
-            "ratio, C from the same with m = 1",
+            "P = F dev Q + ⅓ (tr Q) cof F,  Q = (λ (tr B) I + 2μ B)/(1 + κ/κ₀),  κ = largest "
+            "√(B:C:B) "
+            "so far (in a bar: the largest strain),  B = dev E + ⅓ (J − 1) I,  E = ½ (FᵀF − I),  J "
+            "= "
+            "det F,  λ, μ from modulus m and Poisson ratio, C from the same with m = 1",
         .citation =
             "L. Mullins, Softening of Rubber by Deformation, Rubber Chemistry and Technology "
             "42, 1969; J. C. Simo, On a Fully Three-dimensional Finite-strain Viscoelastic "

@@ -1,10 +1,10 @@
 // One branch of a generalised Maxwell solid (a Prony series): a spring of modulus m and a dashpot
 // in series, beside the elasticity of the body.
 //
-// Over-stress Q with  Q̇ + Q/τ = C : Ė,  C Hooke's moduli for m and ν. This is Simo's model with the
-// second Piola–Kirchhoff stress of a branch linear in E, for the reasons in fem/memory_branch.h;
-// for τ → 0 at constant m τ it becomes stiffness_damping. The free energy of the branch is ½ Q :
-// C⁻¹ : Q, its dissipation Q : C⁻¹ : Q/τ ≥ 0, at any strain.
+// Over-stress Q with  Q̇ + Q/τ = C : Ḃ,  C Hooke's moduli for m and ν, and the strain B of
+// fem/branch_strain.h. This is Simo's model with a stress that is linear in B, for the reasons in
+// fem/memory_branch.h; for τ → 0 at constant m τ it becomes stiffness_damping at small strain. The
+// free energy of the branch is ½ Q : C⁻¹ : Q, its dissipation Q : C⁻¹ : Q/τ ≥ 0, at any strain.
 //
 // C is that of a full isotropic solid, not only of its deviator: with the Poisson ratio of the
 // material (the default) the branch is a scaled copy of it, so that m is the extra Young's modulus
@@ -13,8 +13,8 @@
 //
 // Update (R. L. Taylor, K. S. Pister, G. L. Goudreau 1970): exact for a strain that changes
 // linearly in the step,
-//   e₁ = a e₀ + b (E₁ − E₀),    a = exp(−h/τ),    b = (1 − a) τ/h,    Q = C : e,
-// hence exact in a hold, otherwise of second order, and stable for any h/τ. A point stores e and E.
+//   e₁ = a e₀ + b (B₁ − B₀),    a = exp(−h/τ),    b = (1 − a) τ/h,    Q = C : e,
+// hence exact in a hold, otherwise of second order, and stable for any h/τ. A point stores e and B.
 // Statics is the limit of a very slow motion: e = 0.
 #include <cmath>
 
@@ -29,7 +29,7 @@ namespace {
 class ViscoelasticLaw {
  public:
   enum Parameter { kModulus, kRelaxationTime, kPoissonRatio };
-  static constexpr int kStateSize = 12;  // e, E
+  static constexpr int kStateSize = 12;  // e, B
   using State = Eigen::Matrix<double, kStateSize, 1>;
 
   static const EffectCard& Card() {
@@ -89,9 +89,11 @@ class ViscoelasticLaw {
         .family = EffectFamily::kLossInside,
         .title = "Viscoelastic branch (Maxwell element of a Prony series)",
         .equation =
-            "P = F Q,  dQ/dt + Q/τ = d/dt (λ (tr E) I + 2μ E),  E = ½ (FᵀF − I),  λ and μ from "
-            "modulus m and Poisson ratio;  in a sudden stretch ε held: stress m ε exp(−t/τ) "
-            "on top of the elastic one",
+            "P = F dev Q + ⅓ (tr Q) cof F,  dQ/dt + Q/τ = d/dt (λ (tr B) I + 2μ B),  B = dev E + ⅓ "
+            "(J "
+            "− 1) I,  E = ½ (FᵀF − I),  J = det F,  λ and μ from modulus m and Poisson ratio;  in "
+            "a "
+            "sudden stretch ε held: stress m ε exp(−t/τ) on top of the elastic one",
         .citation =
             "J. C. Simo, On a Fully Three-dimensional Finite-strain Viscoelastic Damage Model, "
             "Computer Methods in Applied Mechanics and Engineering 60, 1987; G. A. Holzapfel, "

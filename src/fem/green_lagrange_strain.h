@@ -11,7 +11,6 @@
 #include <numbers>
 
 #include "fem/lame_constants.h"
-#include "fem/stress_tangent.h"
 
 namespace lacuna {
 
@@ -75,20 +74,6 @@ inline Eigen::Matrix<double, 6, 9> StrainDerivative(const Eigen::Matrix3d& F) {
     derivative.block<1, 3>(3 + k, 3 * j) = std::numbers::sqrt2 / 2 * F.col(i).transpose();
   }
   return derivative;
-}
-
-// ∂P/∂F for P = F S(E), with S = `stress` and ∂S/∂E = `moduli` in the same unit, e.g. Pa.
-inline StressTangent TangentOfSecondStress(const Eigen::Matrix3d& F, const KelvinVector& stress,
-                                           const KelvinMatrix& moduli) {
-  const Eigen::Matrix<double, 6, 9> strain_derivative = StrainDerivative(F);
-  StressTangent tangent = strain_derivative.transpose() * moduli * strain_derivative;
-  const Eigen::Matrix3d S = FromKelvin(stress);
-  for (int j = 0; j < 3; ++j) {
-    for (int l = 0; l < 3; ++l) {
-      tangent.block<3, 3>(3 * j, 3 * l).diagonal().array() += S(j, l);
-    }
-  }
-  return tangent;
 }
 
 }  // namespace lacuna

@@ -1,21 +1,22 @@
 // An effect made from a material law with memory, acting in parallel to the elasticity of a body.
 //
-//   f_a = −Σ_q w_q P_q g_a(q),    P = F S,    S = m s(E; z, h),
-// with the modulus m (Pa), which is the size of the effect, the Green–Lagrange strain E at the end
-// of a time step of length h, and the internal variables z of the point at the start of the step.
-// The stress derives from an incremental potential that is convex in E,
-//   s = ∂w(E; z, h)/∂E,
+//   f_a = −Σ_q w_q P_q g_a(q),    P = F dev Q + ⅓ (tr Q) cof F,    Q = m s(B; z, h),
+// with the modulus m (Pa), which is the size of the effect, the strain B at the end of a time step
+// of length h (branch_strain.h), and the internal variables z of the point at the start of the
+// step. The stress derives from an incremental potential that is convex in B,
+//   s = ∂w(B; z, h)/∂B,
 // as in the variational updates of M. Ortiz and L. Stainier, CMAME 171, 1999. The algorithmic
 // tangent is therefore symmetric, and the line search of Newton's method can descend on the
 // potential. m w is the stored plus the dissipated energy density, up to a constant in each step.
 //
-// Choice of the strain measure. E and z refer to the reference configuration, so that the force
-// follows any rotation. The power is exactly S : Ė at any strain, so that a law that dissipates in
-// (s, E) also does so in the body. No polar decomposition, logarithm or inverse of F is needed that
-// could fail in a crushed or inverted element. The known weakness of the measure, a stiffness that
-// vanishes under strong compression (P = F S with F → 0), matters less beside an elastic law that
-// resists it. Since w is convex, only the geometric part δF S of the tangent can make it
-// indefinite, under pressure; `convexify` removes the negative modes.
+// Choice of the strain measure. B and z refer to the reference configuration, so that the force
+// follows any rotation. The power is exactly Q : Ḃ at any strain, so that a law that dissipates in
+// (s, B) also does so in the body. No polar decomposition, logarithm or inverse of F is needed that
+// could fail in a crushed or inverted element. A branch with a Poisson's ratio near 0.5 resists a
+// change of volume, and a change of shape at constant volume as one with a smaller ratio does. The
+// known weakness of the measure, a stiffness that vanishes under strong compression (P → 0 with F),
+// matters less beside an elastic law that resists it. Since w is convex, only the geometric part of
+// the tangent, in which Q stands, can make it indefinite; `convexify` removes the negative modes.
 //
 // z does not depend on m, so that sensitivities to m exist also for a branch with m = 0.
 //
@@ -24,15 +25,15 @@
 //   static constexpr int kStateSize;                numbers per point; 0 at rest
 //   Law(const VectorXd& parameters, double time_step);            in the order of the card; h in s,
 //                                                                 0 in statics
-//   double Potential(const KelvinVector& E, const State& z) const;                 w
-//   KelvinVector Stress(E, z) const;                                               s
-//   KelvinMatrix Moduli(E, z) const;                                               ∂s/∂E
-//   KelvinVector StressDerivative(E, z, int parameter) const;     ∂s/∂(parameter > 0, no setting)
-//   State AtEnd(E, z) const;                                      z⁺, z at the end of the step
-//   State AtEndDerivative(E, z, int parameter) const;             ∂z⁺/∂(parameter > 0, no setting)
-//   KelvinVector StressChange(E, z, const State& dz) const;                        ∂s/∂z dz
-//   State AtEndChange(E, z, const KelvinVector& dE, const State& dz) const;
-//                                                                 ∂z⁺/∂E dE + ∂z⁺/∂z dz
+//   double Potential(const KelvinVector& B, const State& z) const;                 w
+//   KelvinVector Stress(B, z) const;                                               s
+//   KelvinMatrix Moduli(B, z) const;                                               ∂s/∂B
+//   KelvinVector StressDerivative(B, z, int parameter) const;     ∂s/∂(parameter > 0, no setting)
+//   State AtEnd(B, z) const;                                      z⁺, z at the end of the step
+//   State AtEndDerivative(B, z, int parameter) const;             ∂z⁺/∂(parameter > 0, no setting)
+//   KelvinVector StressChange(B, z, const State& dz) const;                        ∂s/∂z dz
+//   State AtEndChange(B, z, const KelvinVector& dB, const State& dz) const;
+//                                                                 ∂z⁺/∂B dB + ∂z⁺/∂z dz
 // with State a Vector<double, kStateSize>. The derivatives at a limit are those of one branch
 // (Effect::AddStateDerivatives).
 #ifndef LACUNA_FEM_MEMORY_BRANCH_H_
@@ -44,22 +45,12 @@
 #include <Eigen/Eigenvalues>
 #include <optional>
 
+#include "fem/branch_strain.h"
 #include "fem/cloneable_effect.h"
-#include "fem/green_lagrange_strain.h"
 #include "fem/point_integrals.h"
 #include "fem/stress_tangent.h"
 
 namespace lacuna {
-
-// The first Piola–Kirchhoff stress P = F S as its factors, so that the weight w of a quadrature
-// point is applied to F before the product, w P = (w F) S. The order decides how results are
-// rounded.
-struct FactoredStress {
-  Eigen::Matrix3d F, S;
-};
-inline Eigen::Matrix3d operator*(double weight, const FactoredStress& P) {
-  return weight * P.F * P.S;
-}
 
 // The branch as an effect. Its internal variables are those of all quadrature points one after
 // another, kStateSize per point, and are 0 at rest. Energy() is the incremental potential of the
@@ -83,8 +74,8 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     AddNodalForces<Points>(
         at,
         [&](const auto& points, int k) {
-          return FactoredStress{
-              points.F(k), FromKelvin(modulus * law.Stress(points.Strain(k), points.Memory(k)))};
+          return StressOfBranch(points.F(k),
+                                modulus * law.Stress(points.Strain(k), points.Memory(k)));
         },
         force);
   }
@@ -95,8 +86,8 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     AddPointStress<Points>(
         at,
         [&](const auto& points, int k) {
-          return modulus * FactoredStress{points.F(k), FromKelvin(law.Stress(points.Strain(k),
-                                                                             points.Memory(k)))};
+          return StressOfBranch(points.F(k),
+                                modulus * law.Stress(points.Strain(k), points.Memory(k)));
         },
         stress);
     return true;
@@ -111,8 +102,8 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
         [&](const auto& points, int k) {
           const KelvinVector& strain = points.Strain(k);
           const State memory = points.Memory(k);
-          StressTangent C = TangentOfSecondStress(points.F(k), law.Stress(strain, memory),
-                                                  law.Moduli(strain, memory));
+          StressTangent C =
+              TangentOfBranch(points.F(k), law.Stress(strain, memory), law.Moduli(strain, memory));
           if (convexify && !IsPositiveSemidefinite(C)) C = PositivePart(C);
           return C;
         },
@@ -133,8 +124,7 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     AddNodalForces<Points>(
         at,
         [&](const auto& points, int k) {
-          return FactoredStress{points.F(k),
-                                FromKelvin(stress(points.Strain(k), points.Memory(k)))};
+          return StressOfBranch(points.F(k), stress(points.Strain(k), points.Memory(k)));
         },
         derivative);
   }
@@ -200,14 +190,14 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     return states.template segment<Law::kStateSize>(Eigen::Index{Law::kStateSize} * q);
   }
 
-  // The arguments of the law at the points of a batch (point_integrals.h): F, E, and z at the start
+  // The arguments of the law at the points of a batch (point_integrals.h): F, B, and z at the start
   // of the step, whose size LawAt checks.
   template <int kNodes>
   class Points {
    public:
     Points(const Kinematics& at, int begin, int end)
         : at_(at), first_(begin * QuadraturePoints<kNodes>()), deformation_(at, begin, end) {
-      for (int k = 0; k < deformation_.points; ++k) strain_[k] = GreenLagrangeStrain(F(k));
+      for (int k = 0; k < deformation_.points; ++k) strain_[k] = BranchStrain(F(k));
     }
 
     const Eigen::Matrix3d& F(int k) const { return deformation_.gradient[k]; }
@@ -221,7 +211,7 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     KelvinVector strain_[DeformationGradients<kNodes>::kMost];
   };
 
-  // Calls visit(q, E, z) for each quadrature point q.
+  // Calls visit(q, B, z) for each quadrature point q.
   template <typename Visit>
   static void ForEachPoint(const Kinematics& at, const Visit& visit) {
     WithNodesPerElement(at.body, [&](auto nodes) {
@@ -255,9 +245,8 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
           const int q = element * kPoints + p;
           weighted[p] =
               Modulus() * at.body.weight[q] *
-              FactoredStress{points.F(p),
-                             FromKelvin(law.StressChange(points.Strain(p), points.Memory(p),
-                                                         MemoryOf(change, q)))};
+              StressOfBranch(points.F(p), law.StressChange(points.Strain(p), points.Memory(p),
+                                                           MemoryOf(change, q)));
         }
         AddPointForces<kNodes>(at.body, element, weighted, forces.col(k).data());
       }
@@ -278,7 +267,7 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
         for (int p = 0; p < kPoints; ++p) {
           auto own = MemoryOf(change, element * kPoints + p);
           own = law.AtEndChange(points.Strain(p), points.Memory(p),
-                                StrainChange(points.F(p), moved_F[p]), State(own));
+                                BranchStrainChange(points.F(p), moved_F[p]), State(own));
         }
       }
     });

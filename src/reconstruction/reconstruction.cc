@@ -20,8 +20,8 @@ namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
 constexpr int kStatesVersion = 5;
-constexpr int kMotionVersion = 8;
-constexpr int kResultsVersion = 6;
+constexpr int kMotionVersion = 9;
+constexpr int kResultsVersion = 7;
 
 InputFiles InputsOf(const ReconstructionStudy& study) {
   InputFiles inputs;
@@ -94,7 +94,7 @@ RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress
                         [](const FollowedFrame& frame) { return frame.solver.usable; }))
           WriteMotionFile(ShownReconstruction(study, states, motion), folder / "shown_motion.json");
       },
-      LoadRunRecord);
+      ReadRunRecord);
   run.Finish();
   return record;
 }

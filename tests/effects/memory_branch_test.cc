@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <string>
+#include <tuple>
 
 #include "effects/catalogue.h"
 #include "fem/stepper.h"
@@ -56,6 +57,30 @@ TEST_P(MemoryBranchOf, RemembersInTheFrameOfTheMaterial) {
   ASSERT_GT(expected.norm(), 0.01 * kModulus);
   // Rounding of strains (1e-16) and of sums.
   EXPECT_LT((turned.Deform(R * next, 0.01) - expected).norm(), 1e-12 * kModulus);
+}
+
+// A nearly incompressible branch that is stretched by a fifth at constant volume, with all other
+// stress taken up by a pressure that does not belong to it, meets the stress of its modulus.
+TEST(MemoryBranch, IsNoStifferWhereTheVolumeIsKept) {
+  const double stretch = 1.2, across = 1 / std::sqrt(stretch);
+  const Eigen::Matrix3d F = Eigen::Vector3d(stretch, across, across).asDiagonal();
+  const auto nominal_stress = [&](const std::string& type, const std::string& parameter,
+                                  double value, double poisson_ratio) {
+    StrainedBody body(MakeEffect(
+        type, {{"modulus", kModulus}, {parameter, value}, {"poisson_ratio", poisson_ratio}}));
+    const Eigen::Matrix3d cauchy = body.Deform(F, 1e-6) * F.transpose();
+    return (cauchy(0, 0) - cauchy(1, 1)) / stretch;
+  };
+  for (const auto& [type, parameter, value] :
+       {std::tuple("viscoelastic_branch", "relaxation_time", 1e3),
+        std::tuple("softening", "softening_strain", 1e3)}) {
+    EXPECT_NEAR(nominal_stress(type, parameter, value, 0.499), 0.2 * kModulus, 0.01 * kModulus)
+        << type;
+    // At constant volume only the shear modulus m/(2 + 2ν) counts.
+    EXPECT_NEAR(nominal_stress(type, parameter, value, 0.3) / 1.499,
+                nominal_stress(type, parameter, value, 0.499) / 1.3, 2e-4 * kModulus)
+        << type;
+  }
 }
 
 TEST_P(MemoryBranchOf, HasAMemoryIndependentOfItsSize) {

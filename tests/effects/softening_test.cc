@@ -19,12 +19,6 @@ std::shared_ptr<const Effect> Branch(double modulus = kModulus, double poisson =
       "softening", {{"modulus", modulus}, {"softening_strain", kHalf}, {"poisson_ratio", poisson}});
 }
 
-// A bar without lateral effect at E₁₁ = ε; κ is the largest |ε| so far.
-double BarStress(StrainedBody* bar, double strain) {
-  const double stretch = std::sqrt(1 + 2 * strain);
-  return bar->Deform(Eigen::Vector3d(stretch, 1, 1).asDiagonal(), 0)(0, 0) / stretch;
-}
-
 TEST(Softening, PassesTheEffectChecks) { CheckEffect(Branch().get()); }
 
 TEST(Softening, PassesTheEffectChecksForCrushedAndInvertedElements) {
@@ -35,12 +29,12 @@ TEST(Softening, PassesTheEffectChecksForCrushedAndInvertedElements) {
 TEST(Softening, SoftensOnFirstLoadingOnly) {
   for (const int order : {1, 2}) {
     StrainedBody bar(Branch(kModulus, 0), order);
-    double largest = 0;
+    double largest = 0;  // κ of a bar without lateral effect
     for (const double strain : {0.05, 0.2, 0.1, 0.0, 0.15, 0.2, 0.4, 0.3, -0.1, -0.3, 0.4, 0.5}) {
       largest = std::max(largest, std::abs(strain));
       const double expected = kModulus * strain / (1 + largest / kHalf);
       // Rounding of strains (1e-16) and of sums.
-      EXPECT_NEAR(BarStress(&bar, strain), expected, 1e-10 * kModulus * kHalf) << strain;
+      EXPECT_NEAR(bar.StretchBranch(strain, 0), expected, 1e-10 * kModulus * kHalf) << strain;
     }
   }
 }
@@ -56,7 +50,7 @@ TEST(Softening, DissipatesTheEnergyOfTheDamageOnce) {
   for (const double expected : {first, 0.0, 0.0}) {
     double work = 0, before = 0;
     for (int n = 1; n <= 2 * kSteps; ++n) {
-      const double now = BarStress(&bar, kFar * std::min(n, 2 * kSteps - n) / kSteps);
+      const double now = bar.StretchBranch(kFar * std::min(n, 2 * kSteps - n) / kSteps, 0);
       work += 0.5 * (before + now) * (n <= kSteps ? kFar : -kFar) / kSteps;
       before = now;
     }

@@ -22,14 +22,6 @@ std::shared_ptr<const Effect> Branch(double modulus = kModulus, double tau = kTa
                     {{"modulus", modulus}, {"relaxation_time", tau}, {"poisson_ratio", poisson}});
 }
 
-// At uniaxial strain E₁₁ without lateral effect, S₁₁ = P₁₁/s is the over-stress of a bar.
-double Stretch(double strain) { return std::sqrt(1 + 2 * strain); }
-
-double SecondStress(StrainedBody* bar, double strain, double time_step) {
-  const Eigen::Matrix3d F = Eigen::Vector3d(Stretch(strain), 1, 1).asDiagonal();
-  return bar->Deform(F, time_step)(0, 0) / Stretch(strain);
-}
-
 TEST(ViscoelasticBranch, PassesTheEffectChecks) {
   CheckEffect(Branch(kModulus, kTau, 0.4).get());
   // A branch that has relaxed by 1 − 4e-5 at the end of the step.
@@ -48,10 +40,10 @@ TEST(ViscoelasticBranch, RelaxesExponentiallyInAHeldBar) {
     // After a ramp of duration τ/3 in one step, 3 (1 − e^(−1/3)) of the stress of the spring
     // remains.
     double expected = kModulus * kStrain * 3 * (1 - std::exp(-1.0 / 3));
-    EXPECT_NEAR(SecondStress(&bar, kStrain, kTau / 3), expected, 1e-10 * expected);
+    EXPECT_NEAR(bar.StretchBranch(kStrain, kTau / 3), expected, 1e-10 * expected);
     for (const double hold : {0.2, 3.0, 0.01, 1.0}) {  // in τ; the update is exact: only rounding
       expected *= std::exp(-hold);
-      EXPECT_NEAR(SecondStress(&bar, kStrain, hold * kTau), expected, 1e-10 * expected);
+      EXPECT_NEAR(bar.StretchBranch(kStrain, hold * kTau), expected, 1e-10 * expected);
     }
   }
 }
@@ -64,7 +56,7 @@ std::complex<double> ComplexModulus(double omega_tau, int steps) {
   std::complex<double> sum = 0;
   for (int n = 1; n <= 4 * steps; ++n) {
     const double angle = 2 * std::numbers::pi * n / steps;
-    const double stress = SecondStress(&bar, kStrain * std::sin(angle), time_step);
+    const double stress = bar.StretchBranch(kStrain * std::sin(angle), time_step);
     if (n > 3 * steps) sum += stress * std::polar(1.0, -angle);
   }
   return sum * std::complex<double>(0, 2.0 / steps) / (kModulus * kStrain);
@@ -128,11 +120,11 @@ TEST(ViscoelasticBranch, RelaxesInParallelWithAnElasticLawWithoutChangeOfShape) 
 }
 
 TEST(ViscoelasticBranch, BecomesKelvinVoigtWhenItsTimeVanishes) {
-  // Q → m τ C : ΔE/h. On a straight path the rate at the end differs from ΔE/h by a share of half
-  // the strain of the step, here some 2e-5.
+  // Q → m τ C : ΔB/h. At small strain B is E, here up to some 1e-3 of it, and the rate at the end
+  // of a straight path differs from ΔE/h by a share of half the strain of the step.
   constexpr double kShort = 1e-6, kStep = 1e-3;
   StrainedBody body(Branch(kModulus, kShort, 0.3));
-  const Eigen::Matrix3d F{{1.2, 0.1, 0}, {-0.2, 0.9, 0.1}, {0.1, 0, 1.1}};
+  const Eigen::Matrix3d F{{1.0002, 0.0001, 0}, {-0.0002, 0.9999, 0.0001}, {0.0001, 0, 1.0001}};
   const Eigen::Matrix3d change = 1e-5 * Eigen::Matrix3d{{1, 0, 2}, {-1, 1, 0}, {0, 1, -2}};
   body.Deform(F, kStep);
   const Eigen::VectorXd position = ((F + change) * body.body().mesh.nodes).reshaped();
@@ -141,14 +133,14 @@ TEST(ViscoelasticBranch, BecomesKelvinVoigtWhenItsTimeVanishes) {
   const auto damping = MakeEffect(
       "stiffness_damping", {{"beta", kShort}, {"young_modulus", kModulus}, {"poisson_ratio", 0.3}});
   const Eigen::VectorXd viscous = ForceAt(*damping, body.body(), position, velocity);
-  EXPECT_LT((force - viscous).norm(), 1e-4 * viscous.norm());
+  EXPECT_LT((force - viscous).norm(), 1e-3 * viscous.norm());
 }
 
 TEST(ViscoelasticBranch, HasNoForceInStaticsAndNoMemory) {
   StrainedBody body(Branch());
-  EXPECT_GT(SecondStress(&body, 0.2, kTau), 0);
-  EXPECT_EQ(SecondStress(&body, 0.3, 0), 0);
-  EXPECT_EQ(SecondStress(&body, 0.3, kTau), 0);
+  EXPECT_GT(body.StretchBranch(0.2, kTau), 0);
+  EXPECT_EQ(body.StretchBranch(0.3, 0), 0);
+  EXPECT_EQ(body.StretchBranch(0.3, kTau), 0);
 }
 
 TEST(ViscoelasticBranch, TakesItsPoissonRatioFromTheMaterial) {

@@ -48,6 +48,22 @@ class StrainedBody {
            body_.weight.sum();
   }
 
+  // The stress q of a branch with Q = diag(q, 0, 0) at the end of a step that leads to the strain
+  // B = diag(ε, 0, 0) of fem/branch_strain.h, where the stretch s along x and t across it have
+  // s² − t² = 2ε and s t² = 1 + ε.
+  double StretchBranch(double strain, double time_step) {
+    double stretch = 1;
+    for (int k = 0; k < 100; ++k) {
+      const double value = stretch * (stretch * stretch - 2 * strain) - (1 + strain);
+      stretch -= value / (3 * stretch * stretch - 2 * strain);
+    }
+    const double across = std::sqrt(stretch * stretch - 2 * strain);
+    const Eigen::Matrix3d P =
+        Deform(Eigen::Vector3d(stretch, across, across).asDiagonal(), time_step);
+    // P₁₁ = s (q − q/3) + (q/3) t²
+    return P(0, 0) / (2 * stretch / 3 + across * across / 3);
+  }
+
   // The work that it takes to lead all nodes once around a random closed path, by the trapezoidal
   // rule, J. The largest strains are about `strain`; more than 1 inverts elements.
   double WorkOfACycle(double strain, double duration, unsigned seed) {
