@@ -103,9 +103,12 @@ std::string Facts(const CatalogueEntry& entry, size_t k, size_t count) {
     facts += ", usually " +
              InUnit(fmt::format("{:g} to {:g}", parameter.plausible_min, parameter.plausible_max),
                     parameter.dimension);
-    if (parameter.of_modulus)
-      facts += fmt::format(" in a body of {:g} Pa, in proportion to its Young's modulus",
-                           kReferenceModulus);
+    if (parameter.of_body)
+      facts += fmt::format(
+          " in a body with E = {:g} Pa, ρ = {:g} kg/m³ and the length L = {:g} m, in proportion to "
+          "{} in others",
+          kReferenceBody.young_modulus, kReferenceBody.density, kReferenceBody.length,
+          BodyUnitText(parameter.dimension));
   }
   facts += "; " + DefaultText(entry, k, count);
   if (parameter.setting) return facts + "; a setting, which is given and never fitted";

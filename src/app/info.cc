@@ -69,7 +69,7 @@ void DescribeTets(const std::filesystem::path& file) {
 }
 
 void DescribeRun(const std::filesystem::path& folder) {
-  const Manifest manifest = LoadManifest(folder / "manifest.json");
+  const Manifest manifest = ReadManifest(folder / "manifest.json");
   fmt::print("{}: a run, {}\n  by lacuna {}, seed {}, {} input files\n", folder.string(),
              manifest.finished ? "finished" : "not finished (run the same command to resume)",
              manifest.program_version, manifest.seed, manifest.inputs.size());
@@ -79,7 +79,7 @@ void DescribeRun(const std::filesystem::path& folder) {
   for (const auto& [stage, result] : manifest.stages)
     FinishedStage(folder, stage);  // throws where it is damaged
   if (manifest.stages.count("calibration") > 0) {
-    const CalibrationRecord fit = LoadCalibration(folder);
+    const CalibrationRecord fit = ReadCalibration(folder);
     fmt::print("{}", CalibrationReport(fit));
     const std::filesystem::path diagnosis = folder / "diagnosis" / "diagnosis.json";
     if (!std::filesystem::exists(diagnosis)) return;
@@ -92,7 +92,7 @@ void DescribeRun(const std::filesystem::path& folder) {
           diagnosis.string(), folder.string());
     return;
   }
-  const RunRecord record = LoadRunRecord(folder / "results");
+  const RunRecord record = ReadRunRecord(folder / "results");
   fmt::print("  recording {}, {} frames, {} nodes, {} tetrahedra of order {}\n", record.recording,
              record.FrameCount(), record.mesh.node_count, record.mesh.tet_count, record.mesh.order);
   fmt::print("  |D_anim| {}; usable: {}\n",

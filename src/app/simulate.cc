@@ -24,6 +24,7 @@
 #include "prediction/played_recording.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
+#include "prediction/recorded_motion.h"
 #include "record/csv_table.h"
 #include "report/vtk_files.h"
 #include "scan/recording_writer.h"
@@ -158,6 +159,7 @@ uint64_t SeedOf(const std::string& experiment, const std::string& recording, uin
 // are several.
 int PlayExperiment(const Arguments& arguments, const Config& config) {
   const PredictionStudy study = ReadPredictionStudy(config);
+  PrintWarnings(OutputOptions{}, AuxeticWarnings(study));
   std::set<std::string> folders;
   for (const PredictedRecording& item : study.recordings) {
     if (item.ShowsScans())

@@ -29,7 +29,7 @@ void Report(const std::filesystem::path& folder) {
 void Redecide(const std::filesystem::path& folder) {
   int decided = 0;
   for (const std::filesystem::path& own : CasesIn(folder)) {
-    const TrialCase trial = LoadCase(own);
+    const TrialCase trial = ReadCase(own);
     decided += RedecideOutcome(trial, own);
     for (const std::filesystem::path& follow_up : FollowUpFolders(own))
       RedecideOutcome(trial, follow_up);

@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "calibration/calibration_problem.h"
+#include "experiment/model_reader.h"
 #include "experiment/reference_body.h"
 #include "experiment/scatter_findings.h"
 #include "experiment/scene.h"
@@ -56,7 +57,7 @@ int Validate(const std::filesystem::path& path, bool show) {
   } else {
     const Config config = Config::Load(path);
     if (config.Has("bar")) {
-      ReadScene(config);
+      PrintWarnings({AuxeticWarning(ReadScene(config).effects)});
       fmt::print("{}: a valid scene\n", path.string());
     } else if (IsPredictionStudy(config)) {
       const PredictionStudy study = ReadPredictionStudy(config);
@@ -71,9 +72,10 @@ int Validate(const std::filesystem::path& path, bool show) {
       PrintWarnings(body.notes, "the mesh: ");
       const CalibrationProblem problem(study, body.mesh);  // checks the recordings on that mesh
       fmt::print(
-          "{}: a valid experiment for `lacuna fit` on {} recording{}, {} nodes and {} unknowns\n",
+          "{}: a valid experiment for `lacuna fit` on {} recording{}, {} nodes and {} unknown{}\n",
           path.string(), study.recordings.size(), study.recordings.size() == 1 ? "" : "s",
-          body.mesh.NodeCount(), problem.parameters().size());
+          body.mesh.NodeCount(), problem.parameters().size(),
+          problem.parameters().size() == 1 ? "" : "s");
     } else {
       const ReconstructionStudy study = ReadReconstruction(config);
       PrintWarnings(study.recording.warnings);

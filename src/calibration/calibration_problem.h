@@ -8,6 +8,7 @@
 #define LACUNA_CALIBRATION_CALIBRATION_PROBLEM_H_
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -154,6 +155,8 @@ class CalibrationProblem {
   std::optional<ScanDistance> DistanceOfScans(const Eigen::VectorXd& values,
                                               FitMemory* memory) const;
 
+  // The number of frames that Linearise() predicts.
+  int64_t LinearisedFrames() const;
   // Predicts all frames of the fitted recordings. Throws Interrupted.
   LinearisedMisfit Linearise(const Eigen::VectorXd& values,
                              const LineariseOptions& options = {}) const;

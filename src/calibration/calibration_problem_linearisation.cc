@@ -76,6 +76,13 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
   return linearised;
 }
 
+int64_t CalibrationProblem::LinearisedFrames() const {
+  int64_t frames = 0;
+  for (const size_t recording : FittedRecordings())
+    frames += static_cast<int64_t>(models_[recording].recording().frames.size());
+  return frames;
+}
+
 LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values,
                                                const LineariseOptions& options) const {
   ThrowIfInterrupted();

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "calibration/adaptive_time_step.h"
+#include "calibration/data_kinds.h"
 #include "calibration/data_shares.h"
 #include "calibration/known_errors.h"
 #include "calibration/misfit_report.h"
@@ -24,14 +27,14 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage, or its files.
-constexpr int kCalibrationVersion = 35;
+constexpr int kCalibrationVersion = 36;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
 std::vector<HeldParameter> HeldIn(const PredictionStudy& study) {
   std::vector<HeldParameter> held;
   if (study.density_deviation == 0) held.push_back({"density", "kg/m^3", {study.density}});
-  std::vector<ModelParameter> others = ModelParameters(study.effects);
+  std::vector<ModelParameter> others = ModelParameters(study.effects, ScaleOf(study));
   std::erase_if(others, [&](const ModelParameter& parameter) {
     return std::any_of(study.fitted.begin(), study.fitted.end(), [&](const ModelParameter& fitted) {
       return fitted.places.front() == parameter.places.front();
@@ -143,6 +146,15 @@ void CountKnownErrors(const CalibrationProblem& problem, const KnownErrors& erro
   record->notes.insert(record->notes.end(), errors.notes.begin(), errors.notes.end());
 }
 
+// The number of frames that are predicted to describe a fit: those of all recordings once, and
+// those of the fitted ones once more where they have several kinds of data (SharesOfData).
+int64_t FramesToDescribe(const CalibrationProblem& problem) {
+  int64_t frames = HasSeveralKinds(problem) ? problem.LinearisedFrames() : 0;
+  for (const RecordingModel& model : problem.models())
+    frames += static_cast<int64_t>(model.recording().frames.size());
+  return frames;
+}
+
 CalibrationStage FitAndDescribe(PredictionStudy study, const ReferenceBody& reference,
                                 Progress* progress, FitStore* kept) {
   const AdaptedFit fit = FitWithAdaptiveTimeStep(reference.mesh, &study, progress, kept);
@@ -152,8 +164,10 @@ CalibrationStage FitAndDescribe(PredictionStudy study, const ReferenceBody& refe
   CalibrationRecord& record = stage.record;
   record = DescribeFit(fit, study, problem);
   if (record.parameters.size() != problem.parameters().size()) return stage;  // no prediction
-  progress->Begin("predict", 0);
-  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, values);
+  progress->Begin("predict", FramesToDescribe(problem));
+  const std::function<void()> on_frame = StageCounter(progress);
+  const std::vector<RecordingMisfit> misfits =
+      MisfitsOf(problem, values, /*known=*/nullptr, on_frame);
   for (size_t r = 0; r < misfits.size(); ++r)
     record.recordings.push_back(
         DescribeRecording(problem.models()[r], misfits[r], problem.scan_noise()));
@@ -163,7 +177,7 @@ CalibrationStage FitAndDescribe(PredictionStudy study, const ReferenceBody& refe
   stage.misfit = MisfitTable(problem, misfits);
   stage.reactions = ReactionTable(problem, misfits, /*torques=*/false);
   stage.torques = ReactionTable(problem, misfits, /*torques=*/true);
-  const std::vector<std::optional<DataShares>> shares = SharesOfData(problem, values);
+  const std::vector<std::optional<DataShares>> shares = SharesOfData(problem, values, on_frame);
   for (size_t k = 0; k < shares.size(); ++k) record.parameters[k].shares = shares[k];
   progress->End();
   if (record.rms <= kFarFromTruth) {
@@ -239,7 +253,7 @@ void RefuseOtherRuns(const std::filesystem::path& run) {
     throw InputError({run.string()},
                      "is not a run: it holds no manifest.json; lacuna fit EXPERIMENT makes one");
   }
-  const Manifest manifest = LoadManifest(run / "manifest.json");
+  const Manifest manifest = ReadManifest(run / "manifest.json");
   if (manifest.stages.contains("calibration") || manifest.configuration.contains("recordings"))
     return;  // FinishedStage says what is wrong with it, if anything
   throw InputError({run.string()},
@@ -252,14 +266,14 @@ void RefuseOtherRuns(const std::filesystem::path& run) {
 FittedRun OpenRun(const std::filesystem::path& run) {
   RefuseOtherRuns(run);
   FittedRun opened;
-  opened.record = LoadCalibration(run);
+  opened.record = ReadCalibration(run);
   if (!opened.record.usable) {
     throw InputError(
         fmt::format("{}: its fit is not usable: {}", run.string(), opened.record.message));
   }
   const std::filesystem::path experiment = (run / opened.record.experiment).lexically_normal();
   opened.study = ReadPredictionStudy(Config::Load(experiment));
-  const Manifest manifest = LoadManifest(run / "manifest.json");
+  const Manifest manifest = ReadManifest(run / "manifest.json");
   const auto changed = [&](const std::string& what) {
     return InputError(fmt::format("{}: {} has changed since the fit; run `lacuna fit` again",
                                   run.string(), what));
@@ -282,7 +296,7 @@ FittedRun OpenRun(const std::filesystem::path& run) {
   return opened;
 }
 
-CalibrationRecord LoadCalibration(const std::filesystem::path& run) {
+CalibrationRecord ReadCalibration(const std::filesystem::path& run) {
   return ReadCalibrationFile(FinishedStage(run, "calibration") / "calibration.json");
 }
 

@@ -19,7 +19,7 @@ namespace lacuna {
 CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progress);
 
 // The record of a finished run. Throws InputError where there is none.
-CalibrationRecord LoadCalibration(const std::filesystem::path& run);
+CalibrationRecord ReadCalibration(const std::filesystem::path& run);
 
 // A finished run that was opened again. Its experiment and recordings are read again and must be
 // those that were fitted.

@@ -6,9 +6,11 @@
 namespace lacuna {
 
 std::vector<std::optional<DataShares>> SharesOfData(const CalibrationProblem& problem,
-                                                    const Eigen::VectorXd& values) {
+                                                    const Eigen::VectorXd& values,
+                                                    const std::function<void()>& on_frame) {
   if (!HasSeveralKinds(problem)) return {};
-  const LinearisedMisfit misfit = problem.Linearise(values, {.with_jacobian = true});
+  const LinearisedMisfit misfit =
+      problem.Linearise(values, {.with_jacobian = true, .on_frame = on_frame});
   if (!misfit.usable) return {};
   // The parts are whitened independently of one another, so that the squares of each are its own.
   const Eigen::MatrixXd squares =

@@ -72,7 +72,7 @@ std::optional<Misfit> KnownMisfit(const RecordingModel& model, size_t recording,
 // `places` are the offsets of the markers, where another recording has determined them.
 RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorXd& values, size_t r,
                          const std::optional<Eigen::MatrixXd>& places,
-                         const LinearisedMisfit* known) {
+                         const LinearisedMisfit* known, const std::function<void()>& on_frame) {
   const RecordingModel model = problem.ModelAt(r, values);
   const PredictedRecording& item = model.recording();
   const MeasurementErrors errors = problem.ErrorsOf(model);
@@ -81,8 +81,8 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
   recording.nuisance =
       item.fitted ? problem.NuisanceOf(r, values) : FitRecordingNuisances(model, errors, places);
   std::optional<Misfit> predicted = KnownMisfit(model, r, known);
-  recording.misfit =
-      predicted ? *std::move(predicted) : model.Predict(item.frames, recording.nuisance);
+  recording.misfit = predicted ? *std::move(predicted)
+                               : model.Predict(item.frames, recording.nuisance, {}, {}, on_frame);
   const std::vector<char> tells_places = TellsPlaces(item, recording.misfit.frames);
   std::vector<double> times;
   for (const int frame : recording.misfit.frames) {
@@ -114,8 +114,8 @@ std::vector<char> TellsPlaces(const PredictedRecording& item, const std::vector<
 }
 
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
-                                       const Eigen::VectorXd& values,
-                                       const LinearisedMisfit* known) {
+                                       const Eigen::VectorXd& values, const LinearisedMisfit* known,
+                                       const std::function<void()>& on_frame) {
   std::vector<RecordingMisfit> all(problem.models().size());
   // Recordings that determine the places come before those that take them over.
   for (const bool is_told : {false, true}) {
@@ -128,7 +128,7 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
       if (const std::optional<size_t> source = problem.RecordingWithSamePlaces(r);
           source && all[*source].misfit.summary.IsUsable())
         places = problem.InOrderOf(r, *source, all[*source].place_offset);
-      all[r] = MisfitOf(problem, values, r, places, known);
+      all[r] = MisfitOf(problem, values, r, places, known, on_frame);
     });
   }
   return all;

@@ -4,6 +4,7 @@
 #define LACUNA_CALIBRATION_HELD_OUT_MISFIT_H_
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,12 @@ std::vector<char> TellsPlaces(const PredictedRecording& item, const std::vector<
 // is not fitted, the nuisances and the places are those of CalibrationProblem::NuisanceOf and
 // RecordingWithSamePlaces.
 // `known`, if given: the misfit of the problem at `values`, from which the predictions of fitted
-// recordings with markers are taken.
+// recordings with markers are taken. `on_frame`, unless it is empty, is called by several threads
+// at once whenever a frame of a misfit has been predicted.
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
-                                       const LinearisedMisfit* known = nullptr);
+                                       const LinearisedMisfit* known = nullptr,
+                                       const std::function<void()>& on_frame = {});
 
 }  // namespace lacuna
 

@@ -24,7 +24,7 @@ bool IsKept(const std::filesystem::path& file, const std::string& fit) {
 }  // namespace
 
 void KeepMotion(const std::filesystem::path& run, Progress* progress) {
-  const size_t recordings = LoadCalibration(run).recordings.size();
+  const size_t recordings = ReadCalibration(run).recordings.size();
   const std::string fit = HashFile(FinishedStage(run, "calibration") / "calibration.json");
   bool are_kept = true;
   for (size_t r = 0; r < recordings; ++r) are_kept = are_kept && IsKept(MotionFile(run, r), fit);

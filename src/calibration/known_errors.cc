@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,12 +17,7 @@ namespace lacuna {
 
 KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                             Progress* progress) {
-  int64_t frames = 0;
-  std::mutex counting;  // several threads predict; the count must not go backwards
-  const std::function<void()> on_frame = [&] {
-    const std::lock_guard lock(counting);
-    progress->Report(++frames);
-  };
+  const std::function<void()> on_frame = StageCounter(progress);
   KnownErrors errors;
   errors.at_limit = values;
   errors.deviation = Eigen::VectorXd::Zero(values.size());

@@ -42,11 +42,9 @@ void AddModelConflicts(const CalibrationProblem& problem, const Eigen::VectorXd&
   for (size_t k = 0; k < fitted.size(); ++k) {
     const CalibratedParameter& prior = fitted[k].prior;
     const double deviations = std::abs(FromPriorMean(prior, values[static_cast<Eigen::Index>(k)]));
-    // A prior that the experiment gives has a mean (prediction_study_reader.cc).
-    const bool is_default = std::isnan(prior.prior_mean);
     if (deviations > kConflict)
       conflicts->emplace_back(ModelParameterConflict{prior.name, fitted[k].unit, deviations,
-                                                     PriorMeanOf(prior), is_default});
+                                                     PriorMeanOf(prior), prior.has_default_prior});
   }
 }
 

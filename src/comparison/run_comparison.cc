@@ -133,13 +133,13 @@ ComparedRecording DescribeRecording(const FittedRecording& fitted, const Calibra
 Comparison CompareRun(const std::filesystem::path& run) {
   RefuseOtherRuns(run);
   const std::filesystem::path stage = FinishedStage(run, "calibration");
-  const CalibrationRecord record = LoadCalibration(run);
+  const CalibrationRecord record = ReadCalibration(run);
   const std::filesystem::path file = stage / "misfit.csv";
   if (!std::filesystem::exists(file)) {
     throw InputError({run.string()}, "holds a fit whose model could not be simulated" +
                                          (record.message.empty() ? "" : ": " + record.message));
   }
-  const CsvTable table = LoadCsv(file);
+  const CsvTable table = ReadCsv(file);
   Comparison comparison;
   comparison.record.fit = HashFile(stage / "calibration.json");
   comparison.record.noise = record.noise;
@@ -168,7 +168,7 @@ Comparison CompareRun(const std::filesystem::path& run) {
       recording.parts.push_back(std::move(part));
     }
   }
-  ComparePairs(LoadManifest(run / "manifest.json").configuration, are_markers, &comparison);
+  ComparePairs(ReadManifest(run / "manifest.json").configuration, are_markers, &comparison);
   return comparison;
 }
 

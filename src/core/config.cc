@@ -4,12 +4,28 @@
 #include <yaml-cpp/yaml.h>
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "core/config_node.h"
 #include "core/suggestion.h"
 #include "core/text_file.h"
 
 namespace lacuna {
+namespace {
+
+// What to add to the refusal of an unknown key that is the rest of the number of the key `before`
+// it, after a decimal comma; empty where it is not.
+std::string DecimalCommaHint(const ConfigNode& node, const std::string& before) {
+  const std::string meant = node.WithDecimalPoint(before);
+  try {
+    ParseAnyQuantity(meant);
+  } catch (const std::invalid_argument&) {
+    return "";
+  }
+  return "; " + DecimalCommaText(meant);
+}
+
+}  // namespace
 
 Config::Config(std::shared_ptr<ConfigNode> node) : node_(std::move(node)) {}
 
@@ -85,11 +101,15 @@ void Config::RefuseUnknownKeys() const {
   std::vector<std::string> known;
   for (const auto& [key, value] : node_->values) known.push_back(key);
   for (const auto& [key, value] : node_->children) known.push_back(key);
+  std::string before;  // the key of the last entry
   for (const auto& entry : *node_->yaml) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
-    if (node_->Asked(key)) continue;
-    node_->Fail(entry.first.Mark(), node_->Field(key),
-                fmt::format("unknown key{}", Suggestion(key, known)));
+    if (!node_->Asked(key)) {
+      const std::string comma = DecimalCommaHint(*node_, before);
+      node_->Fail(entry.first.Mark(), node_->Field(key),
+                  "unknown key" + (comma.empty() ? Suggestion(key, known) : comma));
+    }
+    before = key;
   }
   for (const auto& [key, children] : node_->children)
     for (const auto& child : children) Config(child).RefuseUnknownKeys();

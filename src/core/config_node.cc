@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cctype>
 #include <utility>
 
 #include "core/error.h"
@@ -41,6 +42,19 @@ std::string ConfigNode::Scalar(const YAML::Node& entry, const std::string& field
          fmt::format("got a {}; expected {}", entry.IsMap() ? "mapping" : "list", expected));
   }
   return entry.Scalar();
+}
+
+std::string ConfigNode::WithDecimalPoint(const std::string& key) const {
+  for (auto entry = yaml->begin(); entry != yaml->end(); ++entry) {
+    if (entry->first.Scalar() != key) continue;
+    const YAML::Node value = entry->second;
+    if (!value.IsScalar() || ++entry == yaml->end() || !entry->second.IsNull()) return "";
+    const std::string decimals = entry->first.Scalar();
+    if (decimals.empty() || std::isdigit(static_cast<unsigned char>(decimals.front())) == 0)
+      return "";
+    return value.Scalar() + "." + decimals;
+  }
+  return "";
 }
 
 void ConfigNode::Fail(const YAML::Mark& mark, const std::string& field,

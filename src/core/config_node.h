@@ -43,6 +43,11 @@ struct ConfigNode {
   std::string Scalar(const YAML::Node& entry, const std::string& field,
                      const std::string& expected) const;
 
+  // The number that a decimal comma after `key` has split, with a point: YAML reads
+  // "{young_modulus: 0,2 MPa}" as the number 0 and a key "2 MPa" without a value. Empty where no
+  // such key follows.
+  std::string WithDecimalPoint(const std::string& key) const;
+
   // Throws InputError "file:line:column: field: message" with the file that `field` was read from.
   [[noreturn]] void Fail(const YAML::Mark& mark, const std::string& field,
                          const std::string& message) const;

@@ -4,7 +4,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <limits>
 #include <stdexcept>
 
@@ -18,26 +17,16 @@ namespace {
 
 constexpr int kMaxListLength = 10'000'000;
 
-// What to add to the refusal of the value of `key` where a decimal comma has split it: YAML reads
-// "{young_modulus: 0,2 MPa}" as the number 0 and a key "2 MPa" without a value.
-std::string DecimalCommaHint(const YAML::Node& mapping, const std::string& key,
+// What to add to the refusal of the value of `key` where a decimal comma has split it.
+std::string DecimalCommaHint(const ConfigNode& node, const std::string& key,
                              const Dimension& dimension) {
-  for (auto entry = mapping.begin(); entry != mapping.end(); ++entry) {
-    if (entry->first.Scalar() != key) continue;
-    const YAML::Node value = entry->second;
-    if (++entry == mapping.end() || !entry->second.IsNull()) return "";
-    const std::string decimals = entry->first.Scalar();
-    const std::string meant = value.Scalar() + "." + decimals;
-    try {
-      if (decimals.empty() || std::isdigit(static_cast<unsigned char>(decimals.front())) == 0)
-        return "";
-      ParseQuantity(meant, dimension);
-    } catch (const std::invalid_argument&) {
-      return "";
-    }
-    return fmt::format("; the decimal separator must be a point: \"{}\"", meant);
+  const std::string meant = node.WithDecimalPoint(key);
+  try {
+    ParseQuantity(meant, dimension);
+  } catch (const std::invalid_argument&) {
+    return "";
   }
-  return "";
+  return "; " + DecimalCommaText(meant);
 }
 
 }  // namespace
@@ -54,7 +43,7 @@ double Config::Quantity(const std::string& key, const Dimension& dimension,
     return value;
   } catch (const std::invalid_argument& problem) {
     node_->Fail(entry.Mark(), node_->Field(key),
-                problem.what() + DecimalCommaHint(*node_->yaml, key, dimension));
+                problem.what() + DecimalCommaHint(*node_, key, dimension));
   }
 }
 
@@ -202,12 +191,16 @@ std::vector<double> Config::Quantities(const std::string& key, const Dimension& 
 Eigen::Vector3d Config::Vector(const std::string& key, const Dimension& dimension) const {
   const YAML::Node entry =
       node_->Required(key, fmt::format("three entries, e.g. [0, 0, {}]", dimension.example));
-  const std::vector<double> values = Quantities(key, dimension, kAnyValue);
-  if (values.size() != 3) {
+  // Before the entries are read: where decimal commas have split them, their units are missing.
+  if (entry.IsSequence() && entry.size() != 3) {
     node_->Fail(entry.Mark(), node_->Field(key),
-                fmt::format("got {} entries; expected three, e.g. [0, 0, {}]", values.size(),
-                            dimension.example));
+                fmt::format("got {} entries; expected three, e.g. [0, 0, {}]{}", entry.size(),
+                            dimension.example,
+                            entry.size() > 3 ? "; a comma separates entries, and a decimal "
+                                               "separator must be a point"
+                                             : ""));
   }
+  const std::vector<double> values = Quantities(key, dimension, kAnyValue);
   return {values[0], values[1], values[2]};
 }
 

@@ -260,7 +260,12 @@ class Parser {
       Fail(at_, fmt::format("expected an operator before \"{}\"", c));
     if (c == '<' || c == '>' || c == '=')
       Fail(at_, fmt::format("unknown operator \"{}\"; write a condition with step(...)", c));
-    if (c == ',') Fail(at_, "unexpected \",\" outside the arguments of a function");
+    if (c == ',') {
+      const bool is_decimal =
+          at_ > 0 && IsDigit(text_[at_ - 1]) && at_ + 1 < text_.size() && IsDigit(text_[at_ + 1]);
+      Fail(at_, std::string("unexpected \",\" outside the arguments of a function") +
+                    (is_decimal ? "; the decimal separator must be a point" : ""));
+    }
     Fail(at_, fmt::format("unexpected \"{}\"", CharacterAt(at_)));
   }
 

@@ -149,6 +149,17 @@ void Progress::Emit(const char* event, const std::string& note) {
   stream << std::flush;
 }
 
+std::function<void()> StageCounter(Progress* progress) {
+  struct Count {
+    std::mutex mutex;
+    int64_t done = 0;
+  };
+  return [progress, count = std::make_shared<Count>()] {
+    const std::lock_guard lock(count->mutex);
+    progress->Report(++count->done);
+  };
+}
+
 void WriteLineToStandardError(std::string_view line) {
   const std::lock_guard lock(standard_error_mutex);
   if (live_line_shown) std::cerr << kEraseLine;

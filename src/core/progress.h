@@ -55,6 +55,11 @@ class Progress {
   const std::unique_ptr<State> state_;
 };
 
+// A function that adds 1 to what is done of the current stage and reports it. It counts from 0 and
+// belongs to the stage during which it is made. Several threads may call it; the reported count
+// never goes backwards. `progress` must outlive it.
+std::function<void()> StageCounter(Progress* progress);
+
 // Writes a line and a newline to standard error. The live line of a Progress is erased first and is
 // written again with the next report.
 void WriteLineToStandardError(std::string_view line);

@@ -13,6 +13,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "core/letter_case.h"
@@ -184,6 +185,31 @@ double ReadNumber(std::string_view text, std::string_view* rest) {
   return number;
 }
 
+// Returns the number at the beginning of `text` with the unit after it, and in `*unit_text` the
+// text of the unit.
+std::pair<double, Unit> ReadNumberAndUnit(std::string_view text, std::string_view* unit_text) {
+  const double number = ReadNumber(text, unit_text);
+  return {number, UnitReader(*unit_text).Read()};
+}
+
+// Throws std::invalid_argument where the number has a decimal comma, and a point in its place would
+// make `text` a quantity: not in "1,234.5 mm".
+void RefuseDecimalComma(std::string_view text) {
+  const size_t comma = text.find_first_not_of("+-0123456789");
+  if (comma == std::string_view::npos || text[comma] != ',') return;
+  if (comma + 1 == text.size() || std::isdigit(static_cast<unsigned char>(text[comma + 1])) == 0)
+    return;
+  std::string meant(text);
+  meant[comma] = '.';
+  try {
+    std::string_view unit_text;
+    ReadNumberAndUnit(meant, &unit_text);
+  } catch (const std::invalid_argument&) {
+    return;
+  }
+  throw std::invalid_argument(DecimalCommaText(meant));
+}
+
 // Returns a pointer to a copy of `text` that exists until the program ends, since a Dimension does
 // not own its strings.
 const char* KeptText(const std::string& text) {
@@ -238,8 +264,8 @@ double ParseQuantity(std::string_view text, const Dimension& expected) {
   std::string_view unit_text;
   Unit unit{"", 1, kDimensionless};
   try {
-    number = ReadNumber(trimmed, &unit_text);
-    unit = UnitReader(unit_text).Read();
+    RefuseDecimalComma(trimmed);
+    std::tie(number, unit) = ReadNumberAndUnit(trimmed, &unit_text);
   } catch (const std::invalid_argument& problem) {
     refuse(problem.what());
   }
@@ -249,12 +275,16 @@ double ParseQuantity(std::string_view text, const Dimension& expected) {
   return number * unit.si;
 }
 
+std::string DecimalCommaText(const std::string& meant) {
+  return fmt::format("the decimal separator must be a point: \"{}\"", meant);
+}
+
 MeasuredQuantity ParseAnyQuantity(std::string_view text) {
   const std::string_view trimmed = Trim(text);
   try {
+    RefuseDecimalComma(trimmed);
     std::string_view unit_text;
-    const double number = ReadNumber(trimmed, &unit_text);
-    const Unit unit = UnitReader(unit_text).Read();
+    const auto [number, unit] = ReadNumberAndUnit(trimmed, &unit_text);
     return {number * unit.si, InWords(unit.dimension)};
   } catch (const std::invalid_argument& problem) {
     const std::string why = problem.what();

@@ -45,8 +45,12 @@ inline constexpr Dimension kAngle{0, 0, 0, 0, 1, "an angle", "30 deg", "rad"};
 // '*', '·' or '.', quotients with '/' and powers with '^'. A number without a unit is accepted only
 // for a dimensionless quantity, and 0 for any, because it is the same in every unit. Throws
 // std::invalid_argument with a message that states what was expected if `text` is not a finite
-// number, or if its unit is unknown or has another dimension.
+// number, or if its unit is unknown or has another dimension. The message about a decimal comma, as
+// in "0,2 mm", says how to write the number.
 double ParseQuantity(std::string_view text, const Dimension& expected);
+
+// What to say of a number with a decimal comma; `meant` is the number with a point, "0.2 mm".
+std::string DecimalCommaText(const std::string& meant);
 
 // A quantity with the dimension of its own unit, e.g. "3 N/kg"; dimensionless without a unit.
 struct MeasuredQuantity {

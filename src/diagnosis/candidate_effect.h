@@ -55,11 +55,11 @@ struct CandidateEffect {
   Eigen::VectorXd prior_centre = {};
   // The effect replaces the elasticity law of the model; false: it is added to the model.
   bool replaces_material = false;
-  double young_modulus = kReferenceModulus;  // Pa, of the model that lacks the effect
+  BodyScale body = kReferenceBody;  // of the model that lacks the effect
 
   // The card of a parameter, with the range that is plausible in this model.
   ParameterCard CardOf(int parameter) const {
-    return PlausibleIn(young_modulus, effect->Card().parameters[static_cast<size_t>(parameter)]);
+    return PlausibleIn(body, effect->Card().parameters[static_cast<size_t>(parameter)]);
   }
 
   bool IsPilot() const { return amplitude.empty(); }

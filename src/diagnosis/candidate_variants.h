@@ -22,6 +22,7 @@ struct CandidateSetting {
   // The effects of the model, the material first. Candidates take moduli from the material and the
   // acceleration from gravity; effects that the model contains are not tried again.
   const EffectList& effects;
+  BodyScale scale;                        // of the body
   double time_step = 0;                   // s, of the simulation: the shortest relaxation time
   double duration = 0;                    // s, of the recordings: the longest relaxation time
   std::vector<std::string> without = {};  // types that are excluded

@@ -57,7 +57,7 @@ std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
       candidates.push_back({card.type, variant.name, entry.make(values), SizeParameters(card)});
       candidates.back().position = variant.position;
       candidates.back().known = variant.known;
-      candidates.back().young_modulus = YoungModulusOf(setting.effects);
+      candidates.back().body = setting.scale;
     }
   }
   for (const OwnLaw& law : setting.laws) {

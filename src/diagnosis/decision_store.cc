@@ -179,7 +179,7 @@ void WriteDecisionInput(const DecisionInput& input, const std::filesystem::path&
   RemoveOthers(matrices, folder);
 }
 
-DecisionInput LoadDecisionInput(const std::filesystem::path& folder) {
+DecisionInput ReadDecisionInput(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "decision.json";
   return ReadJsonFile(file, [&](const json& value) {
     RequireSchemaVersion(value, kSchemaVersion, "lacuna diagnose");

@@ -18,7 +18,7 @@ namespace lacuna {
 void WriteDecisionInput(const DecisionInput& input, const std::filesystem::path& folder);
 // Throws InputError, naming the file, if the folder does not hold a decision in this format, or if
 // a matrix is missing or has changed.
-DecisionInput LoadDecisionInput(const std::filesystem::path& folder);
+DecisionInput ReadDecisionInput(const std::filesystem::path& folder);
 
 }  // namespace lacuna
 

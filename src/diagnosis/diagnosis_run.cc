@@ -21,7 +21,7 @@ namespace {
 using nlohmann::json;
 
 // Raised when the diagnosis changes so that its result does.
-constexpr int kDiagnosisVersion = 55;
+constexpr int kDiagnosisVersion = 56;
 
 std::filesystem::path ResultFile(const std::filesystem::path& run) {
   return run / "diagnosis" / "diagnosis.json";
@@ -53,7 +53,7 @@ std::string DetailsHash(const std::filesystem::path& run, const json& settings) 
 json OriginOf(const std::filesystem::path& run, const DiagnosisOptions& options) {
   return {{"version", kDiagnosisVersion},
           {"fit", HashFile(FinishedStage(run, "calibration") / "calibration.json")},
-          {"fit_key", LoadManifest(run / "manifest.json").stages.at("calibration").key},
+          {"fit_key", ReadManifest(run / "manifest.json").stages.at("calibration").key},
           {"refits", options.refits},
           {"without", options.without}};
 }
@@ -74,7 +74,10 @@ json SettingsOf(const Diagnosis& diagnosis) {
                                 {"refined", candidate.refined},
                                 {"known", known},
                                 {"replaces_material", candidate.replaces_material},
-                                {"young_modulus", candidate.young_modulus}};
+                                {"body",
+                                 {{"young_modulus", candidate.body.young_modulus},
+                                  {"density", candidate.body.density},
+                                  {"length", candidate.body.length}}}};
   }
   return settings;
 }
@@ -177,7 +180,8 @@ ScoredEffect DiagnosedEffect(const FittedRun& fitted, const std::filesystem::pat
     for (const auto& [name, range] : settings.at("known").items())
       candidate.known[name] = {range.at(0), range.at(1)};
     candidate.replaces_material = settings.at("replaces_material");
-    candidate.young_modulus = settings.at("young_modulus");
+    const json& body = settings.at("body");
+    candidate.body = {body.at("young_modulus"), body.at("density"), body.at("length")};
     const std::vector<double> model = settings.at("model");
     scored.baseline_values =
         Eigen::Map<const Eigen::VectorXd>(model.data(), static_cast<Eigen::Index>(model.size()));
@@ -214,7 +218,7 @@ ScoredEffect DiagnosedEffect(const FittedRun& fitted, const std::filesystem::pat
 
 std::optional<KeptDiagnosis> FindDiagnosis(const std::filesystem::path& run) {
   if (!IsOfThisFit(run)) return std::nullopt;
-  return KeptDiagnosis{ReadDiagnosisFile(ResultFile(run)), LoadDecisionInput(DecisionFolder(run))};
+  return KeptDiagnosis{ReadDiagnosisFile(ResultFile(run)), ReadDecisionInput(DecisionFolder(run))};
 }
 
 std::optional<ScoredEffect> FindDiagnosed(const FittedRun& fitted, const std::filesystem::path& run,

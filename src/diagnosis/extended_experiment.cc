@@ -24,17 +24,19 @@ std::string Written(const Effect& effect, const std::filesystem::path& experimen
 }
 
 // The prior is written as it was in force, also where its mean was the start of the fit: the new
-// experiment starts elsewhere, at what the same recordings gave.
+// experiment starts elsewhere, at what the same recordings gave. That it was the default one is
+// written, too, because nobody has measured it.
 std::string FittedEntry(const ModelParameter& parameter) {
   const CalibratedParameter& prior = parameter.prior;
   const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
   std::string entry = fmt::format("    - {{name: {}", QuotedText(prior.name));
   if (std::isfinite(prior.min)) entry += fmt::format(", min: {}{}", prior.min, unit);
   if (std::isfinite(prior.max)) entry += fmt::format(", max: {}{}", prior.max, unit);
-  const double mean = std::isnan(prior.prior_mean) ? prior.start : prior.prior_mean;
+  const double mean = PriorMeanOf(prior);
   if (std::isfinite(prior.prior_deviation))
     entry += fmt::format(", mean: {}{}, deviation: {}{}", mean, unit,
-                         prior.prior_deviation * (prior.log_scale ? mean : 1), unit);
+                         prior.prior_deviation * (prior.log_scale ? mean : 1), unit) +
+             (prior.has_default_prior ? ", prior: default" : "");
   return entry + "}\n";
 }
 

@@ -196,14 +196,16 @@ GripMotions MakeGripMotions(const CalibrationProblem& problem) {
 
 LinearisedWithGrips LineariseWithGrips(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
-                                       std::vector<MisfitDirection> directions) {
+                                       std::vector<MisfitDirection> directions,
+                                       const std::function<void()>& on_frame) {
   LinearisedWithGrips linearised;
   linearised.grips = MakeGripMotions(problem);
   linearised.parameters = static_cast<Eigen::Index>(problem.parameters().size());
   linearised.directions = static_cast<Eigen::Index>(directions.size());
   const std::vector<MisfitDirection>& of_grips = linearised.grips.directions;
   directions.insert(directions.end(), of_grips.begin(), of_grips.end());
-  linearised.misfit = problem.Linearise(values, {.with_jacobian = true, .directions = directions});
+  linearised.misfit = problem.Linearise(
+      values, {.with_jacobian = true, .directions = directions, .on_frame = on_frame});
   return linearised;
 }
 

@@ -18,6 +18,7 @@
 
 #include <Eigen/Core>
 #include <atomic>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -87,10 +88,12 @@ struct LinearisedWithGrips {
   }
 };
 // One tangent-linear simulation along the motion at these values of the problem's parameters. A
-// motion that cannot be predicted gives a misfit that is not usable. Throws Interrupted.
+// motion that cannot be predicted gives a misfit that is not usable. `on_frame` is
+// LineariseOptions::on_frame. Throws Interrupted.
 LinearisedWithGrips LineariseWithGrips(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
-                                       std::vector<MisfitDirection> directions);
+                                       std::vector<MisfitDirection> directions,
+                                       const std::function<void()>& on_frame = {});
 
 // How grip `grip` of the model was recorded; null for one that does not move.
 const RecordedGrip* RecordedAs(const Recording& recording, size_t grip);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
+#include <functional>
 #include <utility>
 
 #include "diagnosis/candidates.h"
@@ -27,13 +28,15 @@ std::vector<LinearPrior> PriorsOfAmounts(const CandidateEffect& candidate) {
 // the columns, and each step may use what stands before it.
 class ColumnsBuilder {
  public:
+  // `on_frame`: LineariseOptions::on_frame of the model's own prediction.
   ColumnsBuilder(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                  const std::vector<std::string>& without, const SceneColumns& known,
-                 const DecidedBase* decided);
+                 const DecidedBase* decided, const std::function<void()>& on_frame);
 
   void AddParameters();
   void AddDecided();
-  void AddEffects();
+  // `on_frame`: that of the pilots.
+  void AddEffects(const std::function<void()>& on_frame);
   void AddModelNuisances();
   void EstimateNoise();
   void AddGripNuisances();
@@ -75,15 +78,15 @@ class ColumnsBuilder {
 
 ColumnsBuilder::ColumnsBuilder(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                                const std::vector<std::string>& without, const SceneColumns& known,
-                               const DecidedBase* decided)
+                               const DecidedBase* decided, const std::function<void()>& on_frame)
     : problem_(problem), without_(without), known_(known), decided_(decided) {
   const PredictionStudy study = problem.StudyAt(values);  // candidates take moduli from its effects
   all_.values = values;
   all_.explained_misfit = study.explained_misfit;
-  all_.candidates =
-      MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study), without,
-                      study.candidates, GrippedNodes(problem.models().front().model())});
-  linearised_ = LineariseWithGrips(problem, values, DirectionsOf(all_.candidates));
+  all_.candidates = MakeCandidates({*problem.body(), study.effects, ScaleOf(study), study.time_step,
+                                    Duration(study), without, study.candidates,
+                                    GrippedNodes(problem.models().front().model())});
+  linearised_ = LineariseWithGrips(problem, values, DirectionsOf(all_.candidates), on_frame);
   CHECK(linearised_.misfit.usable)
       << "the fitted model could be predicted before, but not now: " << linearised_.misfit.message;
   grip_columns_ = linearised_.OfGrips();
@@ -110,7 +113,7 @@ void ColumnsBuilder::AddDecided() {
   }
 }
 
-void ColumnsBuilder::AddEffects() {
+void ColumnsBuilder::AddEffects(const std::function<void()>& on_frame) {
   const Eigen::MatrixXd columns = linearised_.OfDirections();
   Eigen::Index column = 0;
   for (const CandidateEffect& candidate : all_.candidates) {
@@ -118,9 +121,9 @@ void ColumnsBuilder::AddEffects() {
     all_.of_candidate.push_back(Add(columns.middleCols(column, width), PriorsOfAmounts(candidate)));
     column += width;
   }
-  all_.scene.pilots = known_.pilots
-                          ? *known_.pilots
-                          : RunPilots(problem_, all_.values, linearised_.misfit, without_);
+  all_.scene.pilots =
+      known_.pilots ? *known_.pilots
+                    : RunPilots(problem_, all_.values, linearised_.misfit, without_, on_frame);
   for (const PilotHypothesis& pilot : all_.scene.pilots->tried) {
     all_.of_candidate.push_back(Add(pilot.change, PriorsOfAmounts(pilot.candidate)));
     all_.candidates.push_back(pilot.candidate);
@@ -219,13 +222,15 @@ std::vector<LinearPrior> HypothesisColumns::PriorsOf(const std::vector<int>& ind
 }
 
 HypothesisColumns MakeHypothesisColumns(const CalibrationProblem& problem,
-                                        const Eigen::VectorXd& values,
+                                        const Eigen::VectorXd& values, Progress* progress,
                                         const std::vector<std::string>& without,
                                         const SceneColumns& known, const DecidedBase* decided) {
-  ColumnsBuilder builder(problem, values, without, known, decided);
+  progress->Begin("effects", problem.LinearisedFrames());
+  ColumnsBuilder builder(problem, values, without, known, decided, StageCounter(progress));
+  progress->Begin("score", 0);
   builder.AddParameters();
   builder.AddDecided();
-  builder.AddEffects();
+  builder.AddEffects(StageCounter(progress));
   builder.AddModelNuisances();
   builder.EstimateNoise();
   builder.AddGripNuisances();

@@ -15,6 +15,7 @@
 #include "analysis/linear_evidence.h"
 #include "calibration/calibration_problem.h"
 #include "calibration/linear_misfit.h"
+#include "core/progress.h"
 #include "diagnosis/candidate_effect.h"
 #include "diagnosis/effect_ranking.h"
 #include "diagnosis/nuisance.h"
@@ -63,10 +64,11 @@ struct HypothesisColumns {
 
 // The columns beside the study of `problem` with the fitted `values`, of the catalogue's effects
 // but for the types in `without`. What `known` has is taken from there instead of simulated. Null
-// `decided`: there is no earlier ranking. CHECKs that the model can be predicted there. Throws
-// Interrupted.
+// `decided`: there is no earlier ranking. Begins two stages: "effects", one simulation with the
+// derivatives by all effects that have any, and "score", which counts the frames of the pilots and
+// which the caller ends. CHECKs that the model can be predicted there. Throws Interrupted.
 HypothesisColumns MakeHypothesisColumns(const CalibrationProblem& problem,
-                                        const Eigen::VectorXd& values,
+                                        const Eigen::VectorXd& values, Progress* progress,
                                         const std::vector<std::string>& without,
                                         const SceneColumns& known, const DecidedBase* decided);
 

@@ -109,7 +109,7 @@ PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& sc
   own.effect = own.effect->WithParameters(StartOfRefit(scored));
   PredictionStudy with = WithCandidate(study, own);
   if (own.replaces_material) return with;
-  for (ModelParameter& parameter : ModelParameters(with.effects)) {
+  for (ModelParameter& parameter : ModelParameters(with.effects, ScaleOf(with))) {
     if (parameter.places.front().effect + 1 == with.effects.size()) {
       const int index = parameter.places.front().index;
       const ParameterCard card = own.CardOf(index);

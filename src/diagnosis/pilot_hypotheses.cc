@@ -70,7 +70,8 @@ std::vector<CandidateEffect> OtherLaws(const Effect& material) {
 }  // namespace
 
 PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                          const LinearisedMisfit& misfit, const std::vector<std::string>& without) {
+                          const LinearisedMisfit& misfit, const std::vector<std::string>& without,
+                          const std::function<void()>& on_frame) {
   const PredictionStudy study = problem.StudyAt(values);
   const Effect& material = *study.effects.front();
   const auto is_wanted = [&](const std::string& type) {
@@ -99,7 +100,8 @@ PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::Vector
     const size_t at = static_cast<size_t>(k);
     const PredictionStudy changed = WithCandidate(study, candidates[at]);
     const CalibrationProblem pilot(changed, problem.body()->mesh);
-    runs[at] = pilot.Linearise(values, {.correspondences = &misfit, .near = &misfit});
+    runs[at] = pilot.Linearise(values,
+                               {.correspondences = &misfit, .near = &misfit, .on_frame = on_frame});
   });
   std::map<std::string, std::string> failed;
   for (size_t k = 0; k < candidates.size(); ++k) {

@@ -9,6 +9,7 @@
 #define LACUNA_DIAGNOSIS_PILOT_HYPOTHESES_H_
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,10 @@ struct PilotHypotheses {
 // (plane_proposals.h), also with friction on the most deeply crossed one, and each other elasticity
 // law of the catalogue that can take over the moduli of the model. Types in `without` are left out.
 // `misfit` belongs to the model at `values`. A pilot that cannot be simulated is reported in
-// `untried`. Throws Interrupted.
+// `untried`. `on_frame` is LineariseOptions::on_frame of all pilots. Throws Interrupted.
 PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                          const LinearisedMisfit& misfit, const std::vector<std::string>& without);
+                          const LinearisedMisfit& misfit, const std::vector<std::string>& without,
+                          const std::function<void()>& on_frame = {});
 
 }  // namespace lacuna
 

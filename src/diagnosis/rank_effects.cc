@@ -228,8 +228,7 @@ std::vector<TriedVariant> HypothesisScorer::Tried() const {
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           Progress* progress, const std::vector<std::string>& without,
                           const SceneColumns& known, const DecidedBase* decided) {
-  progress->Begin("score", 0);
-  HypothesisColumns all = MakeHypothesisColumns(problem, values, without, known, decided);
+  HypothesisColumns all = MakeHypothesisColumns(problem, values, progress, without, known, decided);
   HypothesisScorer scorer(all);
   scorer.ScoreAndAdopt(decided != nullptr ? 0 : kThresholds.ranking.most_adopted_nuisances);
 

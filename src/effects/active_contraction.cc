@@ -91,7 +91,7 @@ class ActiveContractionLaw {
                                .null_value = 0,
                                .plausible_min = -1e4,
                                .plausible_max = 1e5,
-                               .of_modulus = true,
+                               .of_body = true,
                                .default_value = kMustBeGiven});
     AppendDirectionSetting("axis", "direction in the rest shape, of any length, a,",
                            Eigen::Vector3d::Constant(kMustBeGiven), &card);

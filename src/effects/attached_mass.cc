@@ -60,6 +60,7 @@ class AttachedMassEffect final : public CloneableEffect<AttachedMassEffect, Adde
                         .null_value = 0,
                         .plausible_min = -0.02,
                         .plausible_max = 0.05,
+                        .of_body = true,
                         .default_value = kMustBeGiven}},
         .residual_when_missing =
             "The residual is a force at one place, m g at rest and m (g − a) in motion with the "

@@ -34,6 +34,7 @@ ParameterCard BeddingModulus() {
           .null_value = 0,
           .plausible_min = 0,
           .plausible_max = 1e7,
+          .of_body = true,
           .default_value = kMustBeGiven};
 }
 
@@ -59,6 +60,7 @@ void AppendBeddedPart(EffectCard* card) {
                               .null_value = kNoNullValue,
                               .plausible_min = 0.001,
                               .plausible_max = 0.1,
+                              .of_body = true,
                               .default_value = 0,
                               .log_scale = true,
                               .trial = {.share_of_length = 0.1}});

@@ -59,6 +59,7 @@ class DensityGradientEffect final : public CloneableEffect<DensityGradientEffect
                         .null_value = 0,
                         .plausible_min = -2000,
                         .plausible_max = 2000,
+                        .of_body = true,
                         .default_value = kMustBeGiven}},
         .residual_when_missing =
             "Weight and inertia are too large at one end and too small at the other, in proportion "

@@ -53,7 +53,7 @@ inline ParameterCard BranchModulus(const char* meaning) {
           .null_value = 0,
           .plausible_min = 0,
           .plausible_max = 3e5,
-          .of_modulus = true,
+          .of_body = true,
           .default_value = kMustBeGiven,
           .log_scale = false};
 }

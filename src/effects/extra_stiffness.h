@@ -36,7 +36,7 @@ inline ParameterCard YoungModulusDifference(const std::string& where) {
           .null_value = 0,
           .plausible_min = -1e5,
           .plausible_max = 1e6,
-          .of_modulus = true,
+          .of_body = true,
           .default_value = kMustBeGiven};
 }
 

@@ -113,7 +113,7 @@ class FibreStiffnessLaw {
                                .null_value = 0,
                                .plausible_min = -1e5,
                                .plausible_max = 1e6,
-                               .of_modulus = true,
+                               .of_body = true,
                                .default_value = kMustBeGiven});
     card.parameters.push_back({.name = "azimuth",
                                .meaning =

@@ -66,7 +66,8 @@ class BumpWeight {
                   .dimension = kLength,
                   .null_value = kNoNullValue,
                   .plausible_min = -0.2,
-                  .plausible_max = 0.2},
+                  .plausible_max = 0.2,
+                  .of_body = true},
                  Eigen::Vector3d::Constant(kMustBeGiven), &card);
     card.parameters.push_back({.name = "radius",
                                .meaning = "distance from the centre at which 61 % of the "
@@ -76,6 +77,7 @@ class BumpWeight {
                                .null_value = kNoNullValue,
                                .plausible_min = 0.002,
                                .plausible_max = 0.05,
+                               .of_body = true,
                                .default_value = kMustBeGiven,
                                .log_scale = true,
                                .trial = {.share_of_length = 0.15}});

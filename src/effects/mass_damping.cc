@@ -24,6 +24,7 @@ class MassDampingEffect final : public CloneableEffect<MassDampingEffect> {
                         .null_value = 0,
                         .plausible_min = 0,
                         .plausible_max = 20,
+                        .of_body = true,
                         .default_value = kMustBeGiven,
                         .log_scale = false}},
         .residual_when_missing =

@@ -98,7 +98,8 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
                   .dimension = kForce,
                   .null_value = 0,
                   .plausible_min = -5,
-                  .plausible_max = 5},
+                  .plausible_max = 5,
+                  .of_body = true},
                  Eigen::Vector3d::Constant(kMustBeGiven), &card);
     AppendPlace("the place on the body at rest where it acts,", &card);
     card.parameters.push_back({.name = "start",

@@ -153,7 +153,7 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
                         .null_value = 0,
                         .plausible_min = -1e4,
                         .plausible_max = 1e4,
-                        .of_modulus = true,
+                        .of_body = true,
                         .default_value = kMustBeGiven}},
         .residual_when_missing =
             "The residual is a force along the normal of the surface, proportional to area, which "

@@ -143,6 +143,7 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
                         .null_value = kNoNullValue,
                         .plausible_min = 1e-5,
                         .plausible_max = 1e-2,
+                        .of_body = true,
                         .default_value = kMustBeGiven,
                         .log_scale = true,
                         .trial = {.min = 2e-4, .max = 2e-3, .draw = 9}}},

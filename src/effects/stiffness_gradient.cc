@@ -70,6 +70,7 @@ class LinearWeight {
                                .null_value = kNoNullValue,
                                .plausible_min = 0.01,
                                .plausible_max = 1,
+                               .of_body = true,
                                .default_value = 0.1,
                                .setting = true,
                                .trial = {.share_of_length = 1}});

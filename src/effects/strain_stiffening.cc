@@ -37,7 +37,7 @@ class StrainStiffeningLaw {
                         .null_value = 0,
                         .plausible_min = 0,
                         .plausible_max = 1e5,
-                        .of_modulus = true,
+                        .of_body = true,
                         .default_value = kMustBeGiven}},
         .residual_when_missing =
             "Small loads are predicted well, large ones are not: the measured displacement falls "

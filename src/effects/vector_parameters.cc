@@ -52,7 +52,8 @@ void AppendPlace(const std::string& meaning, EffectCard* card) {
                 .dimension = kLength,
                 .null_value = kNoNullValue,
                 .plausible_min = -0.2,
-                .plausible_max = 0.2},
+                .plausible_max = 0.2,
+                .of_body = true},
                Eigen::Vector3d::Constant(kMustBeGiven), card);
   card->parameters.push_back({.name = "radius",
                               .meaning = "spread about that place (standard deviation), r",
@@ -61,6 +62,7 @@ void AppendPlace(const std::string& meaning, EffectCard* card) {
                               .null_value = kNoNullValue,
                               .plausible_min = 1e-3,
                               .plausible_max = 0.05,
+                              .of_body = true,
                               .default_value = 0.005,
                               .log_scale = true,
                               .setting = true});

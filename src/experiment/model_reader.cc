@@ -111,15 +111,14 @@ std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material)
   return laws;
 }
 
-std::vector<std::string> ImplausibleParameters(const EffectList& effects) {
+std::vector<std::string> ImplausibleParameters(const EffectList& effects, const BodyScale& body) {
   constexpr double kFar = 10;  // factor beyond the limits of the plausible range
   std::vector<std::string> warnings;
-  const double young_modulus = YoungModulusOf(effects);
   for (const auto& effect : effects) {
     const EffectCard& card = effect->Card();
     const Eigen::VectorXd values = effect->Parameters();
     for (size_t k = 0; k < card.parameters.size(); ++k) {
-      const ParameterCard parameter = PlausibleIn(young_modulus, card.parameters[k]);
+      const ParameterCard parameter = PlausibleIn(body, card.parameters[k]);
       const double value = values[static_cast<Eigen::Index>(k)];
       const bool too_small =
           parameter.log_scale && value > 0 && value < parameter.plausible_min / kFar;
@@ -150,7 +149,7 @@ std::string AuxeticWarning(const EffectList& effects) {
 }
 
 std::string GravityWarning(const RecordedObject& object, const EffectList& effects) {
-  if (!object.gravity || GravityOf(effects)) return "";
+  if (!object.gravity || object.gravity->isZero(0) || GravityOf(effects)) return "";
   return "the object was recorded under gravity, but the model has none; this is valid only if the "
          "reference shape was measured under the same gravity";
 }

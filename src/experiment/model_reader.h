@@ -49,8 +49,8 @@ struct OwnLaw {
 // besides the catalogue.
 std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material);
 
-// One warning for each value far outside the plausible range on its effect's card.
-std::vector<std::string> ImplausibleParameters(const EffectList& effects);
+// One warning for each value far outside the range that is plausible in this body.
+std::vector<std::string> ImplausibleParameters(const EffectList& effects, const BodyScale& body);
 
 // A warning about the first effect with a negative Poisson's ratio; empty if there is none. Such
 // materials exist, but a wrong sign is more frequent.

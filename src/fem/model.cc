@@ -7,9 +7,9 @@ const Effect* ElasticityOf(const Model& model) {
 }
 
 double YoungModulusOf(const EffectList& effects) {
-  if (effects.empty()) return kReferenceModulus;
+  if (effects.empty()) return kReferenceBody.young_modulus;
   const int index = ParameterIndex(effects.front()->Card(), "young_modulus");
-  return index < 0 ? kReferenceModulus : effects.front()->Parameters()[index];
+  return index < 0 ? kReferenceBody.young_modulus : effects.front()->Parameters()[index];
 }
 
 std::vector<char> GrippedNodes(const Model& model) {

@@ -39,8 +39,8 @@ struct Model {
 // The elasticity law of the body, owned by the model; null for a model without effects.
 const Effect* ElasticityOf(const Model& model);
 
-// Young's modulus, Pa, of the elasticity law; kReferenceModulus (record/effect_card.h) where the
-// law has none.
+// Young's modulus, Pa, of the elasticity law; that of kReferenceBody (record/effect_card.h) where
+// the law has none.
 double YoungModulusOf(const EffectList& effects);
 
 // One flag per node: 1 where grips prescribe the motion along all axes.

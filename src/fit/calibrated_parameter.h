@@ -26,6 +26,9 @@ struct CalibratedParameter {
   // The prior is Gaussian in φ. A mean of NaN means `start`; an infinite deviation means no prior.
   double prior_mean = std::numeric_limits<double>::quiet_NaN();  // SI
   double prior_deviation = std::numeric_limits<double>::infinity();
+  // Nobody has given the prior: it follows from the range that the card of the effect calls
+  // plausible. The fit does not depend on this; what is said about a conflict does.
+  bool has_default_prior = false;
   // A change of φ that would matter to the user, > 0. The fit scales the parameter by it, and the
   // verdict kFlat compares the uncertainty with it.
   double typical = 1;

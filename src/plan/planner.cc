@@ -42,6 +42,7 @@ struct Influence {
   PlannedColumns columns;
   double seconds = 0;
   ProtocolPicture picture;
+  std::vector<UntriedEffect> untried;  // as in PlannedOutcome
 };
 
 class Planner {
@@ -99,6 +100,7 @@ Planner::Planner(const DiagnosedRun& run, PlanRecord* record)
   study_.time_step = run.diagnosis.time_step;
   candidates_ = MakeCandidates({*problem_.body(),
                                 study_.effects,
+                                ScaleOf(study_),
                                 study_.time_step,
                                 Duration(study_),
                                 {},
@@ -190,8 +192,11 @@ Influence Planner::InfluenceOf(const Protocol& protocol) const {
   std::vector<LinearPrior> own_priors = PriorsAbout(problem.parameters(), values);
   own_priors.erase(own_priors.begin(), own_priors.begin() + of_model);
   for (const NuisanceCandidate& nuisance :
-       NuisancesOfEveryModel({problem, values, misfit, linearised.grips, grip_columns}))
+       NuisancesOfEveryModel({problem, values, misfit, linearised.grips, grip_columns})) {
     AppendColumns(nuisance.columns, nuisance.priors, &own, &own_priors);
+    if (!nuisance.untried.empty())
+      influence.untried.push_back({nuisance.card.name, nuisance.untried});
+  }
   for (LinearPrior& prior : own_priors) prior = {0, prior.deviation, false};
 
   const auto whiten = [&](const Eigen::MatrixXd& columns) {
@@ -299,6 +304,7 @@ PlannedOutcome Planner::Play(const Protocol& protocol) const {
   outcome.seconds = influence.seconds;
   outcome.message = influence.message;
   outcome.picture = std::move(influence.picture);
+  outcome.untried = std::move(influence.untried);
   if (outcome.IsPlayable()) Predict(JoinedSpace(now_, influence.columns), &outcome);
   return outcome;
 }

@@ -82,18 +82,17 @@ std::vector<Region*> RegionsIn(PredictedRecording* item) {
   return regions;
 }
 
-std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
+std::vector<ModelParameter> ModelParameters(const EffectList& effects, const BodyScale& body) {
   std::vector<ModelParameter> parameters;
   std::map<std::string, int> seen;
   size_t of_material = 0;
-  const double young_modulus = YoungModulusOf(effects);
   for (size_t at = 0; at < effects.size(); ++at) {
     const EffectCard& card = effects[at]->Card();
     const bool is_material = at == 0;
     const int repeat = ++seen[card.type];
     const Eigen::VectorXd values = effects[at]->Parameters();
     for (size_t k = 0; k < card.parameters.size(); ++k) {
-      const ParameterCard entry = PlausibleIn(young_modulus, card.parameters[k]);
+      const ParameterCard entry = PlausibleIn(body, card.parameters[k]);
       const double value = values[static_cast<Eigen::Index>(k)];
       const auto end_of_material =
           parameters.begin() + static_cast<std::ptrdiff_t>(is_material ? 0 : of_material);
@@ -119,6 +118,7 @@ std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
       prior.typical = prior.log_scale ? 0.5 * std::log(entry.plausible_max / entry.plausible_min)
                                       : 0.5 * (entry.plausible_max - entry.plausible_min);
       prior.prior_deviation = prior.typical;
+      prior.has_default_prior = true;
       parameters.push_back(parameter);
     }
     if (is_material) of_material = parameters.size();
@@ -156,6 +156,13 @@ double PlaceDeviation(const PredictionStudy& study, const PredictedRecording& it
   const bool is_read_off_frame =
       HasTrackedPoints(item.recording) && !study.place_deviation_is_given;
   return is_read_off_frame ? noise : study.place_deviation;
+}
+
+BodyScale ScaleOf(const PredictionStudy& study) {
+  CHECK(!study.recordings.empty());
+  const double length = study.recordings.front().recording.size;
+  CHECK_GT(length, 0) << "the reader of the recording has measured it";
+  return {YoungModulusOf(study.effects), study.density, length};
 }
 
 double Duration(const PredictionStudy& study) {

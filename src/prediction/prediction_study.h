@@ -86,11 +86,11 @@ struct ModelParameter {
   CalibratedParameter prior;  // named "young_modulus" (material) or "gravity.acceleration_z"
   std::string unit;           // SI unit
 };
-// All parameters of these effects except settings, with the bounds and priors of their cards. An
-// effect shares a parameter of the material (the first effect) if it has one of the same name and
-// value whose value it takes from the material where the user omits it, and gravity if it adds mass
-// that has the same gravity.
-std::vector<ModelParameter> ModelParameters(const EffectList& effects);
+// All parameters of these effects except settings, with the bounds and priors of their cards, whose
+// ranges are those in a body of this scale. An effect shares a parameter of the material (the first
+// effect) if it has one of the same name and value whose value it takes from the material where the
+// user omits it, and gravity if it adds mass that has the same gravity.
+std::vector<ModelParameter> ModelParameters(const EffectList& effects, const BodyScale& body);
 // The effect that a parameter belongs to; of effects that share it, the first.
 const Effect& EffectOf(const ModelParameter& parameter, const EffectList& effects);
 // Whether a parameter is the density of the body, which the experiment states beside the effects.
@@ -137,6 +137,10 @@ struct PredictionStudy {
 // σ of the places of a recording's points on the object, m. The places of tracked points are read
 // off an undeformed frame, so that they have its noise (m, σ) unless place_deviation is given.
 double PlaceDeviation(const PredictionStudy& study, const PredictedRecording& item, double noise);
+
+// The scale of the model's body: the modulus of its material, its density, and the size of the
+// first recording's object, whose shape it has.
+BodyScale ScaleOf(const PredictionStudy& study);
 
 // The time that the used frames span, s, in the longest recording.
 double Duration(const PredictionStudy& study);

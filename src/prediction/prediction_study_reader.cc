@@ -74,13 +74,17 @@ void RequireSomethingToFit(const Config& config, const PredictionStudy& study) {
                           1e3 * deformation, 1e3 * study.place_deviation));
 }
 
-// Reads the prior of a parameter: `mean`, by default the start value, and `deviation`, which is
-// divided by the mean for a parameter on a logarithmic scale.
+// Reads the prior of a parameter: `mean`, by default the start value, `deviation`, which is divided
+// by the mean for a parameter on a logarithmic scale, and `prior`, which says where they are from.
 void ReadPrior(const Config& item, const ParameterCard& card, CalibratedParameter* prior) {
   if (!item.Has("deviation")) {
-    if (item.Has("mean")) item.Fail("mean", "needs a `deviation` beside it");
+    for (const char* key : {"mean", "prior"})
+      if (item.Has(key)) item.Fail(key, "needs a `deviation` beside it");
     return;
   }
+  // Not read where it is absent, so that the configuration of other experiments stays the same.
+  prior->has_default_prior =
+      item.Has("prior") && item.Choice<bool>("prior", {{"given", false}, {"default", true}});
   prior->prior_mean = item.Quantity("mean", card.dimension, card.bounds, prior->start);
   if (prior->log_scale && !(prior->prior_mean > 0))
     item.Fail("mean", "must be positive: the parameter is fitted on a logarithmic scale");
@@ -98,8 +102,9 @@ void ReadBounds(const Config& item, const ParameterCard& card, CalibratedParamet
 
 // Reads `fit: {parameters: [{name: young_modulus, min: 1 kPa}, …]}`. If it is absent, the
 // parameters of the material are fitted.
-std::vector<ModelParameter> ReadFitted(const Config& config, const EffectList& effects) {
-  const std::vector<ModelParameter> known = ModelParameters(effects);
+std::vector<ModelParameter> ReadFitted(const Config& config, const EffectList& effects,
+                                       const BodyScale& body) {
+  const std::vector<ModelParameter> known = ModelParameters(effects, body);
   const auto fit = config.OptionalChild("fit");
   if (!fit) {
     std::vector<ModelParameter> of_material;
@@ -164,7 +169,7 @@ void AddDensity(const Config& config, PredictionStudy* study) {
                               item.name));
   study->effects.push_back(MakeUniformDensity(
       study->density, GravityOf(study->effects).value_or(Eigen::Vector3d::Zero())));
-  ModelParameter parameter = ModelParameters(study->effects).back();
+  ModelParameter parameter = ModelParameters(study->effects, ScaleOf(*study)).back();
   CalibratedParameter& prior = parameter.prior;
   prior.name = "density";
   const int index = parameter.places.front().index;
@@ -172,6 +177,7 @@ void AddDensity(const Config& config, PredictionStudy* study) {
             study->effects.back()->Card().parameters[index].bounds, &prior);
   prior.prior_mean = study->density;
   prior.prior_deviation = prior.typical = study->density_deviation;
+  prior.has_default_prior = false;
   study->fitted.push_back(parameter);
 }
 
@@ -282,7 +288,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   const auto& density = study.recordings.front().recording.object.density;
   study.density = density ? config.Quantity("density", kDensity, kPositive, *density)
                           : config.Quantity("density", kDensity, kPositive);
-  study.fitted = ReadFitted(config, study.effects);
+  study.fitted = ReadFitted(config, study.effects, ScaleOf(study));
   RequireKnownWeights(config, study);
   AddDensity(config, &study);
   config.RefuseUnknownKeys();

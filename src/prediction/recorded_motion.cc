@@ -99,24 +99,15 @@ std::string GravityWarning(const PredictedRecording& item, const PredictionStudy
   return warning.empty() ? "" : item.name + ": " + warning;
 }
 
-// An effect of the study is reported once, and not for each recording.
-std::vector<std::string> AuxeticWarnings(const PredictionStudy& study) {
-  std::vector<std::string> warnings = {AuxeticWarning(study.effects)};
-  for (const PredictedRecording& item : study.recordings)
-    if (const std::string warning = AuxeticWarning(item.effects); !warning.empty())
-      warnings.push_back(item.name + ": " + warning);
-  return warnings;
-}
-
 // An effect of the study is reported once. Those of a recording follow the study's, whose material
 // determines what is plausible.
 std::vector<std::string> ImplausibleValues(const PredictionStudy& study) {
-  std::vector<std::string> warnings = ImplausibleParameters(study.effects);
+  std::vector<std::string> warnings = ImplausibleParameters(study.effects, ScaleOf(study));
   const auto of_study = static_cast<std::ptrdiff_t>(warnings.size());
   for (const PredictedRecording& item : study.recordings) {
     EffectList effects = study.effects;
     effects.insert(effects.end(), item.effects.begin(), item.effects.end());
-    const std::vector<std::string> all = ImplausibleParameters(effects);
+    const std::vector<std::string> all = ImplausibleParameters(effects, ScaleOf(study));
     std::transform(all.begin() + of_study, all.end(), std::back_inserter(warnings),
                    [&](const std::string& warning) { return item.name + ": " + warning; });
   }
@@ -187,6 +178,17 @@ std::string ScanSettingsWarning(const PredictionStudy& study) {
 }
 
 }  // namespace
+
+// An effect of the study is reported once, and not for each recording.
+std::vector<std::string> AuxeticWarnings(const PredictionStudy& study) {
+  std::vector<std::string> warnings;
+  if (const std::string warning = AuxeticWarning(study.effects); !warning.empty())
+    warnings.push_back(warning);
+  for (const PredictedRecording& item : study.recordings)
+    if (const std::string warning = AuxeticWarning(item.effects); !warning.empty())
+      warnings.push_back(item.name + ": " + warning);
+  return warnings;
+}
 
 std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
   std::vector<std::string> warnings;

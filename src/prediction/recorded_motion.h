@@ -15,6 +15,8 @@ namespace lacuna {
 bool IsAtRest(const PredictionStudy& study);
 // A warning where nothing moves; empty otherwise.
 std::string RestWarning(const PredictionStudy& study);
+// The warnings about negative Poisson's ratios, of the model and of each recording's own effects.
+std::vector<std::string> AuxeticWarnings(const PredictionStudy& study);
 // All warnings that a user should see before the computation: RestWarning, the warnings of the
 // recordings, frames that show no marker, markers and tracked points that are elsewhere because of
 // a mistake (place_doubts.h), a part on a given path that has moved before a first frame that is to

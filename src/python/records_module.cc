@@ -51,7 +51,7 @@ Motion ReadMotion(const ReportedModel& model, size_t recording) {
     throw py::index_error("the run has no recording of this number");
   const py::gil_scoped_release unlocked;
   const std::filesystem::path file = model.folder / "calibration/misfit.csv";
-  return {ReadResiduals(LoadCsv(file), static_cast<int>(recording), file),
+  return {ReadResiduals(ReadCsv(file), static_cast<int>(recording), file),
           model.calibration.recordings[recording].scan.has_value()};
 }
 

@@ -295,7 +295,8 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
                 "reference shape or more frames");
   }
   CheckPathsAndForces(config, &study);
-  for (const std::string& warning : ImplausibleParameters(study.effects))
+  const BodyScale scale = {YoungModulusOf(study.effects), study.density, study.recording.size};
+  for (const std::string& warning : ImplausibleParameters(study.effects, scale))
     study.recording.warnings.push_back(warning);
   if (const std::string warning = AuxeticWarning(study.effects); !warning.empty())
     study.recording.warnings.push_back(warning);

@@ -50,7 +50,7 @@ void WriteCsv(const CsvTable& table, const std::filesystem::path& file) {
   WriteFileAtomically(file, text);
 }
 
-CsvTable LoadCsv(const std::filesystem::path& file) {
+CsvTable ReadCsv(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) throw InputError({file.string()}, "cannot be read: no such file, or no permission");
   std::string line;

@@ -23,7 +23,7 @@ void WriteCsv(const CsvTable& table, const std::filesystem::path& file);
 
 // Reads a file written by WriteCsv. Throws InputError with file:line if a row has another number of
 // fields than the header or if a field is not a number.
-CsvTable LoadCsv(const std::filesystem::path& file);
+CsvTable ReadCsv(const std::filesystem::path& file);
 
 // The values of the column with this name; nullptr if there is none.
 const Eigen::VectorXd* FindColumn(const CsvTable& table, const std::string& name);

@@ -106,9 +106,9 @@ DecisionRecord DecisionFromJson(const json& value) {
     decision.separations.push_back({one.at("first"), one.at("second"), NumberOr(one.at("lambda"))});
   const json& adequacy = value.at("adequacy");
   decision.adequacy = {adequacy.at("beside"),
-                       NumberOr(adequacy.at("p_unknown_force")),
+                       NumberOr(adequacy.value("p_unknown_force", json())),
                        adequacy.at("p_further"),
-                       NumberOr(adequacy.at("p_variance")),
+                       NumberOr(adequacy.value("p_variance", json())),
                        adequacy.at("p"),
                        adequacy.at("is_adequate"),
                        adequacy.at("further"),

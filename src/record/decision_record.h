@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "record/effect_card.h"
+#include "record/run_record.h"
 
 namespace lacuna {
 
@@ -40,11 +41,13 @@ struct HypothesisProbability {
 };
 
 // Whether the most probable hypothesis leaves what noise leaves: tail probabilities under noise
-// alone (diagnosis/adequacy.h), NaN for a statistic that there is not.
+// alone (diagnosis/adequacy.h).
 struct RecordedAdequacy {
-  std::vector<std::string> beside;  // the hypothesis that was tested; empty: nothing
-  double p_unknown_force = 1, p_further = 1, p_variance = 1;
-  double p = 1;             // of the smallest of those that there are
+  std::vector<std::string> beside;        // the hypothesis that was tested; empty: nothing
+  double p_unknown_force = kNotMeasured;  // not measured where no recording shows such a force
+  double p_further = 1;
+  double p_variance = kNotMeasured;  // not measured where the noise is not known
+  double p = 1;                      // of the smallest of those that there are
   bool is_adequate = true;  // p is not below the level of the test, or what is left not probable
   std::string further;      // the best further effect or nuisance beside it
   double further_evidence = 0;  // its evidence

@@ -1,5 +1,10 @@
 #include "record/effect_card.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
 #include "core/error.h"
 
 namespace lacuna {
@@ -28,13 +33,42 @@ const Family& Find(EffectFamily family) {
   return kFamilies[0];
 }
 
+// The exponents with which a unit is a product of E, ρ and L.
+struct BodyUnit {
+  double modulus = 0, density = 0, length = 0;
+};
+BodyUnit BodyUnitOf(const Dimension& dimension) {
+  BodyUnit unit;  // of E, kg/(m s²), and ρ, kg/m³
+  unit.modulus = -0.5 * dimension.second;
+  unit.density = dimension.kilogram - unit.modulus;
+  unit.length = dimension.metre + unit.modulus + 3 * unit.density;
+  return unit;
+}
+
 }  // namespace
 
-ParameterCard PlausibleIn(double young_modulus, ParameterCard parameter) {
-  if (!parameter.of_modulus) return parameter;
-  parameter.plausible_min *= young_modulus / kReferenceModulus;
-  parameter.plausible_max *= young_modulus / kReferenceModulus;
+ParameterCard PlausibleIn(const BodyScale& body, ParameterCard parameter) {
+  if (!parameter.of_body) return parameter;
+  const BodyUnit unit = BodyUnitOf(parameter.dimension);
+  const double ratio = std::pow(body.young_modulus / kReferenceBody.young_modulus, unit.modulus) *
+                       std::pow(body.density / kReferenceBody.density, unit.density) *
+                       std::pow(body.length / kReferenceBody.length, unit.length);
+  parameter.plausible_min *= ratio;
+  parameter.plausible_max *= ratio;
   return parameter;
+}
+
+std::string BodyUnitText(const Dimension& dimension) {
+  const BodyUnit unit = BodyUnitOf(dimension);
+  std::vector<std::string> factors;
+  const auto add = [&](const char* symbol, double exponent) {
+    if (exponent == 0) return;
+    factors.push_back(exponent == 1 ? symbol : fmt::format("{}^{:g}", symbol, exponent));
+  };
+  add("E", unit.modulus);
+  add("ρ", unit.density);
+  add("L", unit.length);
+  return fmt::format("{}", fmt::join(factors, " "));
 }
 
 std::string FamilyTitle(EffectFamily family) { return Find(family).title; }

@@ -39,9 +39,14 @@ inline constexpr double kNoNullValue = std::numeric_limits<double>::quiet_NaN();
 // A parameter whose value the user must give, because there is no sensible default.
 inline constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
 
-// Young's modulus, Pa, of the body for which cards state the plausible ranges of stiffnesses and
-// stresses.
-inline constexpr double kReferenceModulus = 1e5;
+// What makes some sizes of an effect plausible in a body and others not.
+struct BodyScale {
+  double young_modulus = 1e5;  // Pa
+  double density = 1000;       // kg/m³
+  double length = 0.1;         // m, the diagonal of the bounding box
+};
+// The body for which cards state plausible ranges.
+inline constexpr BodyScale kReferenceBody;
 
 struct ParameterCard {
   std::string name;           // the YAML key
@@ -51,17 +56,21 @@ struct ParameterCard {
   double null_value = 0;      // the value at which the effect vanishes, or kNoNullValue
   double plausible_min = 0;   // range of plausible values for soft objects, SI; its end that is
   double plausible_max = 0;   // farther from the null value (or 0) is the scale of the prior
-  // A stiffness or a stress inside the body, of which the range is plausible in a body with
-  // kReferenceModulus; it grows in proportion to the body's Young's modulus (PlausibleIn()).
-  bool of_modulus = false;
+  // The range is the one in kReferenceBody. In another body it is multiplied by the ratio of the
+  // units of the parameter's dimension that consist of the body's Young's modulus E, density ρ and
+  // length L: a stress by that of E, a force by that of E L² and a mass by that of ρ L³.
+  bool of_body = false;
   double default_value = 0;  // SI, or kMustBeGiven
   bool log_scale = false;    // the fit and the trials use the logarithm of the value
   bool setting = false;      // describes where or how the effect acts; never fitted
   TrialSetting trial = {};
 };
 
-// The parameter with the range that is plausible in a body with this Young's modulus, Pa.
-ParameterCard PlausibleIn(double young_modulus, ParameterCard parameter);
+// The parameter with the range that is plausible in this body.
+ParameterCard PlausibleIn(const BodyScale& body, ParameterCard parameter);
+
+// The unit of a dimension of length, mass and time that consists of E, ρ and L: "E L^2" of a force.
+std::string BodyUnitText(const Dimension& dimension);
 
 // The variants with which the diagnosis tries an effect that the model lacks. A derivative at the
 // null value determines the size of an effect, but not its place, direction or time scale, which

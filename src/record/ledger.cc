@@ -104,6 +104,7 @@ json ModelToJson(const Ledger& ledger, size_t index, const std::filesystem::path
     entry["added"] = model.added;
     entry["gain"] = model.gain;
     entry["gain_at_measured_places"] = model.gain_at_measured_places;
+    entry["gain_with_reactions"] = model.gain_with_reactions;
     entry["size_may_be_zero"] = model.may_be_zero;
   }
   if (model.diagnosis) {
@@ -142,7 +143,7 @@ std::vector<std::string> Ledger::MayBeLeftOut() const {
 bool LowersError(const LedgerModel& model, double share) {
   // A smaller change of the held-out error is none. Larger: an effect counts that raises it more.
   constexpr double kNoChange = 0.02;
-  return model.gain > share ||
+  return model.gain > share || model.gain_with_reactions > share ||
          (model.gain > -kNoChange && model.gain_at_measured_places > std::max(share, kNoChange));
 }
 
@@ -161,6 +162,33 @@ bool SizeMayBeZero(const CalibrationRecord& record, const DiagnosisRecord& befor
   }
   return has_size;
 }
+
+namespace {
+
+// The rms of all measured values over their σ, those of points and of forces and torques: of the
+// held-out ones or, where no point was held out, of the fitted ones.
+double ErrorWithReactions(const CalibrationRecord& record) {
+  const bool has_held_out =
+      std::any_of(record.recordings.begin(), record.recordings.end(),
+                  [](const FittedRecording& recording) { return recording.held_out.points > 0; });
+  double squares = 0, values = 0;
+  const auto add = [&](double count, double rms_over_sigma) {
+    squares += count * rms_over_sigma * rms_over_sigma;
+    values += count;
+  };
+  for (const FittedRecording& recording : record.recordings) {
+    const MisfitMeasure& points = has_held_out ? recording.held_out : recording.in_fit;
+    // A scan measures the distance along the normal.
+    add((recording.scan ? 1 : 3) * points.points, points.rms_over_sigma);
+    for (const FittedReaction& reaction : recording.reactions) {
+      const ReactionMeasure& measure = has_held_out ? reaction.held_out : reaction.in_fit;
+      add(measure.values, measure.rms_over_sigma);
+    }
+  }
+  return values > 0 ? std::sqrt(squares / values) : 0;
+}
+
+}  // namespace
 
 ModelErrors ErrorsOf(const CalibrationRecord& record) {
   struct Sum {
@@ -231,6 +259,9 @@ LedgerModel MakeLedgerModel(const Ledger& ledger, const std::filesystem::path& r
   if (before != nullptr && record.usable && before->errors.held_out_at_measured_places > 0)
     model.gain_at_measured_places =
         1 - model.errors.held_out_at_measured_places / before->errors.held_out_at_measured_places;
+  if (before != nullptr && record.usable)
+    if (const double error_before = ErrorWithReactions(before->record); error_before > 0)
+      model.gain_with_reactions = 1 - ErrorWithReactions(record) / error_before;
   model.may_be_zero =
       before != nullptr && before->diagnosis && SizeMayBeZero(record, *before->diagnosis, added);
   return model;

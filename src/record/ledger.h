@@ -39,6 +39,9 @@ struct LedgerModel {
   // Relative reduction of the parent's held-out error with the points at the places where they were
   // measured (in m).
   double gain_at_measured_places = 0;
+  // Relative reduction of the parent's error (in σ) over the measured values of all kinds: those of
+  // points and of forces and torques. The same as `gain` where no force is measured.
+  double gain_with_reactions = 0;
   std::vector<ParameterMove> moves;  // changes from the parent
   bool may_be_zero = false;          // as SizeMayBeZero says of the added effect
   std::optional<DiagnosisRecord> diagnosis;
@@ -81,9 +84,10 @@ bool SizeMayBeZero(const CalibrationRecord& record, const DiagnosisRecord& befor
                    const std::string& added);
 
 // Whether a model's error is smaller than its parent's by more than this share: the held-out error
-// or, where that stays the same to 2 %, the held-out error with the points at the places where they
-// were measured. Places that are fitted within their uncertainty may hide a deformation that the
-// parent lacks.
+// of the points, the error with measured forces and torques or, where the first stays the same to
+// 2 %, the held-out error with the points at the places where they were measured. Places that are
+// fitted within their uncertainty may hide a deformation that the parent lacks, and so may grips
+// that prescribe the motion, of which only the force tells what is missing.
 bool LowersError(const LedgerModel& model, double share);
 
 // The errors over all recordings of a fit.

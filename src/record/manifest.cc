@@ -48,7 +48,7 @@ void WriteManifest(const Manifest& manifest, const std::filesystem::path& file) 
   WriteFileAtomically(file, document.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
-Manifest LoadManifest(const std::filesystem::path& file) {
+Manifest ReadManifest(const std::filesystem::path& file) {
   const auto read = [&](const json& document) {
     Manifest manifest;
     manifest.schema_version = document.at("schema_version");

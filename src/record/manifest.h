@@ -62,7 +62,7 @@ std::string InputName(const std::filesystem::path& file, const std::filesystem::
 void WriteManifest(const Manifest& manifest, const std::filesystem::path& file);
 
 // Throws InputError if the file is absent, damaged, or written by a later version of Lacuna.
-Manifest LoadManifest(const std::filesystem::path& file);
+Manifest ReadManifest(const std::filesystem::path& file);
 
 }  // namespace lacuna
 

@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/json_file.h"
 #include "core/json_number.h"
+#include "record/schema_version.h"
 
 namespace lacuna {
 namespace {
@@ -33,6 +34,7 @@ json PictureToJson(const ProtocolPicture& picture) {
 
 json OutcomeToJson(const PlannedOutcome& outcome, const std::vector<PlannedRival>& rivals) {
   json named = json::object(), pairs = json::array(), sizes = json::array();
+  json untried = json::array();
   for (size_t k = 0; k < outcome.named.size(); ++k) named[rivals[k].effect] = outcome.named[k];
   for (const PlannedPair& pair : outcome.pairs)
     pairs.push_back({{"first", pair.first},
@@ -46,6 +48,8 @@ json OutcomeToJson(const PlannedOutcome& outcome, const std::vector<PlannedRival
                      {"value", NumberOrNull(size.value)},
                      {"half_width_now", NumberOrNull(size.half_width_now)},
                      {"half_width_then", NumberOrNull(size.half_width_then)}});
+  for (const UntriedEffect& nuisance : outcome.untried)
+    untried.push_back({{"nuisance", nuisance.type}, {"why", nuisance.why}});
   return {{"name", outcome.name},
           {"what", outcome.what},
           {"seconds", outcome.seconds},
@@ -55,7 +59,8 @@ json OutcomeToJson(const PlannedOutcome& outcome, const std::vector<PlannedRival
           {"pairs", pairs},
           {"sizes", sizes},
           {"protocol", PictureToJson(outcome.picture)},
-          {"experiment", outcome.experiment}};
+          {"experiment", outcome.experiment},
+          {"untried", untried}};
 }
 
 }  // namespace
@@ -81,9 +86,8 @@ bool IsPlanOf(const std::string& diagnosis, const std::filesystem::path& file) {
   return plan.is_object() && plan.value("diagnosis", json()) == diagnosis;
 }
 
-bool IsPlanOfAnotherFormat(const std::filesystem::path& file) {
-  const json plan = ReadJsonFile(file);
-  return plan.is_object() && plan.value("schema_version", json()) != kSchemaVersion;
+RecordVersion VersionOfPlan(const std::filesystem::path& file) {
+  return VersionOf(ReadJsonFile(file), kSchemaVersion);
 }
 
 void WritePlanFile(const PlanRecord& record, const std::filesystem::path& file) {

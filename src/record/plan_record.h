@@ -12,6 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "record/model_errors.h"
+#include "record/record_version.h"
+
 namespace lacuna {
 
 // With this λ two effects are told apart in about four recordings of five.
@@ -76,6 +79,9 @@ struct PlannedOutcome {
   std::vector<PlannedSize> sizes;
   ProtocolPicture picture = {};
   std::string experiment;  // the YAML file that was written, relative to plan.json
+  // Nuisances that could not be tried with this recording: `named`, `pairs` and `sizes` do not
+  // count them, and promise too much where they matter.
+  std::vector<UntriedEffect> untried = {};
 
   bool IsPlayable() const { return message.empty(); }
   // The smallest λ of a pair with the recording; infinite where there is no pair.
@@ -104,9 +110,9 @@ void SortOutcomes(std::vector<PlannedOutcome>* outcomes);
 // that is no plan. Throws InputError when it cannot be read or is not JSON.
 bool IsPlanOf(const std::string& diagnosis, const std::filesystem::path& file);
 
-// Whether a plan is in the format of another version of Lacuna. Throws InputError when the file
-// cannot be read or is not JSON.
-bool IsPlanOfAnotherFormat(const std::filesystem::path& file);
+// The version of Lacuna whose format a plan has. Throws InputError when the file cannot be read or
+// is not JSON.
+RecordVersion VersionOfPlan(const std::filesystem::path& file);
 
 // Throws InputError when the file cannot be written.
 void WritePlanFile(const PlanRecord& record, const std::filesystem::path& file);

@@ -24,7 +24,7 @@ struct ModelParameterConflict {
   // Distance in standard deviations of the prior, on the scale on which the parameter is fitted.
   double deviations = 0;
   double mean = 0;          // SI, of the prior
-  bool is_default = false;  // the experiment gives no deviation: the prior is that of the card
+  bool is_default = false;  // nobody has given the prior: it is that of the effect's card
 };
 
 // A marker's estimated place on the undeformed object is far from the recorded one.

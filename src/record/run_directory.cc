@@ -61,7 +61,7 @@ void RefuseForeignFolder(const fs::path& folder) {
 }
 
 // Whether a manifest is damaged so that it is no JSON any more. The run then starts over. Manifests
-// of later versions, and files of other programs, are refused by LoadManifest instead.
+// of later versions, and files of other programs, are refused by ReadManifest instead.
 bool IsNoJson(const fs::path& file) {
   std::ifstream stream(file);
   const bool is_none =
@@ -128,7 +128,7 @@ RunDirectory::RunDirectory(const fs::path& folder) : folder_(folder) {
   const bool was_run = fs::exists(file);
   // A manifest of another program, in whose folder no run has been, is refused before a lock is
   // left there: the next attempt would take it for a damaged manifest of a run.
-  if (!was_run && fs::exists(folder_ / kManifestName)) LoadManifest(folder_ / kManifestName);
+  if (!was_run && fs::exists(folder_ / kManifestName)) ReadManifest(folder_ / kManifestName);
   lock_.emplace(file);
   if (!lock_->holds()) {
     const std::string holder = HolderOf(file);  // empty if the other run has just ended
@@ -140,7 +140,7 @@ RunDirectory::RunDirectory(const fs::path& folder) : folder_(folder) {
   }
   RemoveLeftTemporaries(folder_);
   if (fs::exists(folder_ / kManifestName) && !(was_run && IsNoJson(folder_ / kManifestName)))
-    manifest_ = LoadManifest(folder_ / kManifestName);
+    manifest_ = ReadManifest(folder_ / kManifestName);
   // Another version of the program or of a library may give other results.
   if (manifest_.program_version != ProgramVersion() ||
       manifest_.library_versions != LibraryVersions()) {
@@ -233,7 +233,7 @@ void RunDirectory::Finish() {
 void RunDirectory::Save() const { WriteManifest(manifest_, folder_ / kManifestName); }
 
 fs::path FinishedStage(const fs::path& run, const std::string& stage) {
-  const Manifest manifest = LoadManifest(run / kManifestName);
+  const Manifest manifest = ReadManifest(run / kManifestName);
   if (!manifest.finished) {
     throw InputError({run.string()},
                      "is the folder of a run that was not finished; start the run again and it "

@@ -184,7 +184,7 @@ void WriteRunRecord(const RunRecord& record, const std::filesystem::path& folder
                       document.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
-RunRecord LoadRunRecord(const std::filesystem::path& folder) {
+RunRecord ReadRunRecord(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kRecordName;
   const auto read = [&](const json& document) {
     RunRecord record;

@@ -89,7 +89,7 @@ struct RunRecord {
 void WriteRunRecord(const RunRecord& record, const std::filesystem::path& folder);
 
 // Reads record.json and point_residuals.npy. Throws InputError if a file is absent or damaged.
-RunRecord LoadRunRecord(const std::filesystem::path& folder);
+RunRecord ReadRunRecord(const std::filesystem::path& folder);
 
 }  // namespace lacuna
 

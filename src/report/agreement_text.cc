@@ -39,8 +39,9 @@ std::string ExplainAgreement(const AgreementRecord& agreement) {
   if (!agreement.Exists())
     return "The recordings alone do not determine the parameters well enough to be compared.";
   const std::string test =
-      fmt::format("χ² = {:.1f} with {} degrees of freedom, {}", agreement.chi_square,
-                  agreement.degrees_of_freedom, ProbabilityText(agreement.p_value));
+      fmt::format("χ² = {:.1f} with {} degree{} of freedom, {}", agreement.chi_square,
+                  agreement.degrees_of_freedom, agreement.degrees_of_freedom == 1 ? "" : "s",
+                  ProbabilityText(agreement.p_value));
   if (!agreement.Disagree())
     return fmt::format(
         "The {} recordings agree: their parameters, each estimated from one recording alone, "

@@ -97,7 +97,7 @@ json ModelDocument(const std::vector<ReportedModel>& models, size_t index) {
 GatheredRun GatherFit(const fs::path& folder) {
   const ReportedRun run = OpenReportedRun(folder);
   const ReportedModel& opened = run.Opened();
-  const Manifest manifest = LoadManifest(opened.folder / "manifest.json");
+  const Manifest manifest = ReadManifest(opened.folder / "manifest.json");
   json models = json::array();
   for (size_t k = 0; k < run.models.size(); ++k) models.push_back(ModelDocument(run.models, k));
   const std::optional<double> noise = RmsOfNoise(opened.calibration);

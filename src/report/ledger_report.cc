@@ -117,8 +117,11 @@ std::string Branch(const Ledger& ledger, size_t index, const std::string& margin
               fmt::format("   {:.0f} % {} than before", std::abs(100 * child.gain),
                           child.gain >= 0 ? "less" : "more");
     if (child.record.usable && !(child.gain > 0) && LowersError(child, 0))
-      text += fmt::format("; with the points where they were measured, {:.0f} % less",
-                          100 * child.gain_at_measured_places);
+      text += child.gain_with_reactions > 0
+                  ? fmt::format("; with the measured forces, {:.0f} % less",
+                                100 * child.gain_with_reactions)
+                  : fmt::format("; with the points where they were measured, {:.0f} % less",
+                                100 * child.gain_at_measured_places);
     text += "\n" + Branch(ledger, children[k], margin + (is_last ? "    " : kTrunk));
   }
   return text;

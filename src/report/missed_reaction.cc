@@ -31,6 +31,10 @@ WorstReaction FindWorstReaction(const CalibrationRecord& record) {
   return worst;
 }
 
+bool HasLikelyMistake(const ReadingMistakes& mistakes) {
+  return mistakes.factor || mistakes.offset || mistakes.delay;
+}
+
 // What a mistake in a reading may be, as the second half of a sentence.
 std::string DescribeMistakes(const FittedReaction& reaction) {
   const ReadingMistakes& mistakes = reaction.likely_mistakes;
@@ -75,6 +79,10 @@ std::string MissedReactionSentence(const ReportedModel& model) {
       model.calibration.recordings.size() > 1 ? fmt::format(" ({})", recording->name) : "",
       error->rms, reaction->Unit(), error->rms_over_sigma);
   if (error->rms < kConsiderableReactionError * reaction->largest_reading) return text;
+  // Where an effect has been named that explains the reading, only a mistake that fits is worth a
+  // doubt.
+  const bool is_explained = model.diagnosis && model.diagnosis->verdict == Verdict::kMissing;
+  if (is_explained && !HasLikelyMistake(reaction->likely_mistakes)) return text;
   return text + " Before an effect is looked for, the load cell should be checked: " +
          DescribeMistakes(*reaction);
 }

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/text_layout.h"
@@ -114,6 +117,22 @@ std::string WhyNot(const PlanRecord& plan) {
           "\n" + Wrapped(fmt::format("\"{}\" cannot be made: {}", outcome.name, outcome.message),
                          "", "  ");
   return reasons;
+}
+
+// The nuisances that could not be tried, each once with the recordings of which this holds.
+std::string Untried(const PlanRecord& plan) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> recordings;
+  for (const PlannedOutcome& outcome : plan.outcomes)
+    for (const UntriedEffect& nuisance : outcome.untried)
+      recordings[{nuisance.type, nuisance.why}].push_back(fmt::format("\"{}\"", outcome.name));
+  std::string text;
+  for (const auto& [nuisance, names] : recordings)
+    text +=
+        "\n" + Wrapped(fmt::format("not tried with {}: {}; {}. The share of right names and the "
+                                   "intervals with such a recording may be too good.",
+                                   EnumerationText(names), nuisance.first, nuisance.second),
+                       "", "  ");
+  return text;
 }
 
 // The pairs of rivals that no recording tells apart, with the largest λ that one reaches.
@@ -227,7 +246,7 @@ std::string PlanReport(const PlanRecord& plan) {
     text +=
         "\nExpected 95 % intervals with the best recording, if the effect is the missing one:\n" +
         Sizes(plan);
-  return text + WhyNot(plan);
+  return text + Untried(plan) + WhyNot(plan);
 }
 
 }  // namespace lacuna

@@ -26,7 +26,7 @@ using nlohmann::json;
 constexpr double kLeastShare = 0.05;
 constexpr double kLeastMotion = 1e-9;  // m or rad; smaller ones are rounding errors
 
-CsvTable LoadIfThere(const fs::path& file) { return fs::exists(file) ? LoadCsv(file) : CsvTable(); }
+CsvTable ReadIfThere(const fs::path& file) { return fs::exists(file) ? ReadCsv(file) : CsvTable(); }
 
 // The rows of each component of each reading of recording `r` in which there is a value.
 std::map<std::pair<int, int>, std::vector<int>> RowsOfComponents(const CsvTable& table, size_t r,
@@ -89,9 +89,9 @@ void AppendCurves(const CsvTable& table, const fs::path& file, bool is_torque, s
 
 }  // namespace
 
-ReactionTables LoadReactionTables(const fs::path& calibration) {
-  return {calibration, LoadIfThere(calibration / "reactions.csv"),
-          LoadIfThere(calibration / "torques.csv")};
+ReactionTables ReadReactionTables(const fs::path& calibration) {
+  return {calibration, ReadIfThere(calibration / "reactions.csv"),
+          ReadIfThere(calibration / "torques.csv")};
 }
 
 json ReactionCurves(const ReactionTables& tables, size_t r, const FittedRecording& recording) {

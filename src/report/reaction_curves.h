@@ -17,7 +17,7 @@ struct ReactionTables {
   std::filesystem::path folder;
   CsvTable forces, torques;
 };
-ReactionTables LoadReactionTables(const std::filesystem::path& calibration);
+ReactionTables ReadReactionTables(const std::filesystem::path& calibration);
 
 // All components of all readings of recording number `r`, which is `recording`: forces, then
 // torques. An empty list where none is measured. Throws InputError when the tables and the

@@ -32,8 +32,8 @@ constexpr int kSchema = 1;
 
 GatheredRun GatherReconstruction(const fs::path& folder) {
   const fs::path results = FinishedStage(folder, "results");
-  const RunRecord record = LoadRunRecord(results);
-  const Manifest manifest = LoadManifest(folder / "manifest.json");
+  const RunRecord record = ReadRunRecord(results);
+  const Manifest manifest = ReadManifest(folder / "manifest.json");
   const std::string name = RunName(folder);
   json scenes = json::array();
   if (json scene = ReconstructionScene(folder); !scene.is_null()) scenes.push_back(scene);
@@ -44,7 +44,7 @@ GatheredRun GatherReconstruction(const fs::path& folder) {
   document["models"].push_back(
       {{"name", name}, {"added", ""}, {"label", "reconstruction"}, {"scenes", scenes}});
   document["reconstruction"] = {{"record", ReadJsonFile(results / "record.json")},
-                                {"frames", TableToJson(LoadCsv(results / "frames.csv"))},
+                                {"frames", TableToJson(ReadCsv(results / "frames.csv"))},
                                 {"trace", nullptr}};
   document["provenance"] = Provenance(manifest, {"lacuna report " + FromProject(folder, folder)});
   return gathered;
@@ -58,7 +58,7 @@ GatheredRun Gather(const fs::path& folder) {
         {folder.string()},
         "is not a run: it holds no manifest.json, table1.json, ablation.json, report.json or "
         "intervals.json");
-  const Manifest manifest = LoadManifest(folder / "manifest.json");
+  const Manifest manifest = ReadManifest(folder / "manifest.json");
   if (!manifest.finished)
     throw InputError({folder.string()},
                      "the run is not finished: run the same command again to resume it");

@@ -38,30 +38,29 @@ ReportedModel OpenModel(const fs::path& folder, const std::string& added,
   if (model.calibration.usable) model.errors = ErrorsOf(model.calibration);
   for (const std::string& note : model.calibration.notes)
     notes->push_back(fmt::format("The fit of {}: {}.", model.name, note));
-  const auto leave_out = [&](const char* what, const char* earlier, const char* command) {
+  const auto leave_out = [&](const char* what, const std::string& origin, const char* command) {
     notes->push_back(fmt::format(
-        "The {} in the folder of {} is of an earlier {} and is not shown; `lacuna {}` makes a new "
-        "one.",
-        what, model.name, earlier, command));
+        "The {} in the folder of {} is of {} and is not shown; `lacuna {}` makes a new one.", what,
+        model.name, origin, command));
   };
   if (const fs::path file = folder / "comparison/comparison.json"; fs::exists(file)) {
     if (IsComparisonOf(model.fit, file))
       model.comparison = ReadComparisonFile(file);
     else
-      leave_out("comparison", "fit", "compare");
+      leave_out("comparison", "an earlier fit", "compare");
   }
   if (const fs::path file = folder / "diagnosis/diagnosis.json"; fs::exists(file)) {
     if (IsDiagnosisOf(model.fit, folder / "diagnosis")) {
       model.diagnosis = ReadDiagnosisFile(file);
     } else {
-      leave_out("diagnosis", "fit", "diagnose");
+      leave_out("diagnosis", "an earlier fit", "diagnose");
     }
   }
   if (const fs::path file = folder / "plan/plan.json"; fs::exists(file)) {
     if (!model.diagnosis || !IsPlanOf(HashFile(folder / "diagnosis/diagnosis.json"), file))
-      leave_out("plan", "diagnosis", "plan");
-    else if (IsPlanOfAnotherFormat(file))
-      leave_out("plan", "version of Lacuna", "plan");
+      leave_out("plan", "an earlier diagnosis", "plan");
+    else if (const RecordVersion version = VersionOfPlan(file); version != RecordVersion::kThis)
+      leave_out("plan", RecordVersionText(version), "plan");
     else
       model.has_plan = true;
   }
@@ -126,8 +125,8 @@ json FramesOf(const Manifest& manifest) {
 // Whether the run `after` has the model of the run `before` with this effect added, and the same
 // recordings.
 bool IsAddedTo(const fs::path& before, const std::string& effect, const fs::path& after) {
-  const Manifest old = LoadManifest(before / "manifest.json");
-  const Manifest added = LoadManifest(after / "manifest.json");
+  const Manifest old = ReadManifest(before / "manifest.json");
+  const Manifest added = ReadManifest(after / "manifest.json");
   try {
     return CountOf(effect, added.configuration) > CountOf(effect, old.configuration) &&
            added.inputs == old.inputs && FramesOf(added) == FramesOf(old);
@@ -144,7 +143,7 @@ std::string RunName(const fs::path& folder) {
 
 bool IsFittedRun(const fs::path& folder) {
   if (!fs::exists(folder / "manifest.json")) return false;
-  const Manifest manifest = LoadManifest(folder / "manifest.json");
+  const Manifest manifest = ReadManifest(folder / "manifest.json");
   return manifest.finished && manifest.stages.contains("calibration");
 }
 

@@ -226,11 +226,11 @@ json SceneDocuments(const ReportedModel& model) {
   json scenes = json::array();
   const fs::path file = FinishedStage(model.folder, "calibration") / "misfit.csv";
   if (!fs::exists(file)) return scenes;  // a model that could not be simulated
-  const CsvTable misfit = LoadCsv(file);
+  const CsvTable misfit = ReadCsv(file);
   const fs::path force_file = model.folder / "comparison/unexplained_force.csv";
   const CsvTable forces =
-      model.comparison && fs::exists(force_file) ? LoadCsv(force_file) : CsvTable();
-  const ReactionTables reactions = LoadReactionTables(file.parent_path());
+      model.comparison && fs::exists(force_file) ? ReadCsv(force_file) : CsvTable();
+  const ReactionTables reactions = ReadReactionTables(file.parent_path());
   for (size_t r = 0; r < model.calibration.recordings.size(); ++r) {
     const RecordedResiduals residuals = ReadResiduals(misfit, static_cast<int>(r), file);
     if (!residuals.frames.empty())

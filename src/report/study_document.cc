@@ -68,7 +68,7 @@ json Table1WithTraces(const fs::path& folder) {
   for (const json& row : table.at("rows")) {
     const std::string name = row.at("name");
     if (const fs::path file = folder / (name + ".csv"); fs::exists(file))
-      table["traces"][name] = TableToJson(LoadCsv(file));
+      table["traces"][name] = TableToJson(ReadCsv(file));
   }
   return table;
 }

@@ -135,7 +135,7 @@ std::string AdequacySentence(const RecordedAdequacy& adequacy) {
         beside, adequacy.p);
   if (adequacy.is_tolerated)
     return fmt::format(
-        "{} leaves more than noise does (p = {:.3f}, {:.2f} σ over all frames), but only {:.1f} % "
+        "{} leaves more than noise does (p = {:.3f}, {:.2f} σ over all frames), but only {:.2g} % "
         "of "
         "the squared misfit that was explained: no more than the error of any model.",
         beside, adequacy.p, adequacy.rms_over_sigma, 100 * adequacy.left_share);

@@ -1,4 +1,6 @@
-// The sentences that explain a verdict, made from the recorded diagnosis alone.
+// The explanation of a verdict in whole sentences for a reader who knows the method, and the parts
+// that all texts about a verdict share, such as the titles of effects. Made from the recorded
+// diagnosis alone. The plain sentence that a headline says instead: report/headline_verdict.h.
 #ifndef LACUNA_REPORT_VERDICT_TEXT_H_
 #define LACUNA_REPORT_VERDICT_TEXT_H_
 

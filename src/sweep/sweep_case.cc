@@ -55,7 +55,7 @@ void WriteIdentity(const SweepIdentity& identity, const std::filesystem::path& f
                                 {"command", NameOf(identity.command)}});
 }
 
-SweepIdentity LoadIdentity(const std::filesystem::path& folder) {
+SweepIdentity ReadIdentity(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "sweep.json";
   if (!std::filesystem::exists(file))
     throw InputError({folder.string()},
@@ -80,7 +80,7 @@ void WriteCase(const SweepCase& entry, const std::filesystem::path& case_folder)
                                     {"turns", entry.settings.turns}});
 }
 
-std::vector<SweepCase> LoadCases(const std::filesystem::path& folder) {
+std::vector<SweepCase> ReadCases(const std::filesystem::path& folder) {
   std::vector<SweepCase> cases;
   for (const auto& item : std::filesystem::directory_iterator(folder)) {
     const std::filesystem::path file = item.path() / "case.json";
@@ -115,7 +115,7 @@ void WriteOutcome(const CaseOutcome& outcome, const std::filesystem::path& case_
   Write(case_folder / "outcome.json", json);
 }
 
-std::optional<CaseOutcome> LoadOutcome(const std::filesystem::path& case_folder) {
+std::optional<CaseOutcome> ReadOutcome(const std::filesystem::path& case_folder) {
   const std::filesystem::path file = case_folder / "outcome.json";
   if (!std::filesystem::exists(file)) return std::nullopt;
   return ReadVersioned(file, [&](const auto& json) {

@@ -44,15 +44,15 @@ struct SweepIdentity {
 
 void WriteIdentity(const SweepIdentity& identity, const std::filesystem::path& folder);
 // Throws InputError if the folder is not that of a sweep.
-SweepIdentity LoadIdentity(const std::filesystem::path& folder);
+SweepIdentity ReadIdentity(const std::filesystem::path& folder);
 
 void WriteCase(const SweepCase& entry, const std::filesystem::path& case_folder);
 // All cases, sorted by number. Throws InputError for a damaged case.
-std::vector<SweepCase> LoadCases(const std::filesystem::path& folder);
+std::vector<SweepCase> ReadCases(const std::filesystem::path& folder);
 
 void WriteOutcome(const CaseOutcome& outcome, const std::filesystem::path& case_folder);
 // The outcome; none if the case has not ended. Throws InputError for a damaged file.
-std::optional<CaseOutcome> LoadOutcome(const std::filesystem::path& case_folder);
+std::optional<CaseOutcome> ReadOutcome(const std::filesystem::path& case_folder);
 
 }  // namespace lacuna
 

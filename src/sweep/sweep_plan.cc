@@ -119,7 +119,7 @@ void RefuseForeignFolder(const fs::path& folder, const SweepIdentity& identity) 
       if (entry.path().filename() != kLockName && !IsTemporaryFile(entry.path()))
         files.push_back(entry.path());
   if (fs::exists(folder / "sweep.json")) {
-    const SweepIdentity known = LoadIdentity(folder);
+    const SweepIdentity known = ReadIdentity(folder);
     if (known.command != identity.command)
       throw InputError(
           {folder.string()},
@@ -131,7 +131,7 @@ void RefuseForeignFolder(const fs::path& folder, const SweepIdentity& identity) 
 }
 
 std::vector<SweepCase> PlannedCases(const fs::path& folder) {
-  return fs::is_directory(folder) ? LoadCases(folder) : std::vector<SweepCase>();
+  return fs::is_directory(folder) ? ReadCases(folder) : std::vector<SweepCase>();
 }
 
 // The cases that a sweep file adds to those of a folder, with their files.

@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool IsToRun(const fs::path& case_folder, bool retry_failed) {
-  const auto outcome = LoadOutcome(case_folder);
+  const auto outcome = ReadOutcome(case_folder);
   return !outcome || (retry_failed && !outcome->done);
 }
 
@@ -88,7 +88,7 @@ void RunCase(const SweepIdentity& identity, const SweepCase& entry, const fs::pa
 void KeepCrash(const SweepCase& entry, const fs::path& case_folder, const std::string& reason,
                bool retries) {
   const Claim claim(case_folder / "claimed");
-  const auto before = LoadOutcome(case_folder);
+  const auto before = ReadOutcome(case_folder);
   if (!claim.holds() || (before && (before->done || !retries))) return;
   CaseOutcome outcome;
   outcome.message = reason + "; its last output is in log.txt";
@@ -97,7 +97,7 @@ void KeepCrash(const SweepCase& entry, const fs::path& case_folder, const std::s
 }
 
 std::vector<SweepCase> Chosen(const fs::path& folder, const std::vector<int>& numbers) {
-  std::vector<SweepCase> cases = LoadCases(folder);
+  std::vector<SweepCase> cases = ReadCases(folder);
   if (numbers.empty()) return cases;
   std::vector<SweepCase> chosen;
   for (const int number : numbers) {
@@ -114,7 +114,7 @@ std::vector<SweepCase> Chosen(const fs::path& folder, const std::vector<int>& nu
 }  // namespace
 
 int RunSweep(const fs::path& given_folder, const SweepRunOptions& options) {
-  const SweepIdentity identity = LoadIdentity(given_folder);
+  const SweepIdentity identity = ReadIdentity(given_folder);
   const fs::path folder = fs::canonical(given_folder);
   const std::vector<SweepCase> cases = Chosen(folder, options.numbers);
   std::vector<SweepCase> to_run;
@@ -130,14 +130,14 @@ int RunSweep(const fs::path& given_folder, const SweepRunOptions& options) {
   ThrowIfInterrupted();
   int unfinished = 0;
   for (const SweepCase& entry : cases) {
-    const auto outcome = LoadOutcome(folder / entry.name);
+    const auto outcome = ReadOutcome(folder / entry.name);
     unfinished += !outcome || !outcome->done;
   }
   return unfinished;
 }
 
 std::vector<int> UnfinishedCases(const fs::path& folder, const SweepRunOptions& options) {
-  LoadIdentity(folder);
+  ReadIdentity(folder);
   std::vector<int> numbers;
   for (const SweepCase& entry : Chosen(folder, options.numbers))
     if (IsToRun(folder / entry.name, options.retry_failed)) numbers.push_back(entry.number);

@@ -175,9 +175,9 @@ int SweepTable::Count(CaseStatus status) const {
 }
 
 SweepTable CollectSweep(const std::filesystem::path& folder) {
-  SweepTable table{LoadIdentity(folder), {}};
-  for (const SweepCase& entry : LoadCases(folder)) {
-    SweepRow row{entry, CaseStatus::kPlanned, "", LoadOutcome(folder / entry.name)};
+  SweepTable table{ReadIdentity(folder), {}};
+  for (const SweepCase& entry : ReadCases(folder)) {
+    SweepRow row{entry, CaseStatus::kPlanned, "", ReadOutcome(folder / entry.name)};
     if (row.outcome) {
       row.status = row.outcome->done ? CaseStatus::kDone : CaseStatus::kFailed;
       row.note = row.outcome->message;

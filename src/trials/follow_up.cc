@@ -48,12 +48,12 @@ struct PlannedCase {
 PlannedCase FitAgain(const fs::path& own) {
   Progress progress({.style = ProgressStyle::kSilent});
   PlannedCase planned;
-  planned.trial = LoadCase(own);
+  planned.trial = ReadCase(own);
   PredictionStudy study = ReadPredictionStudy(Config::Load(own / kExperimentFile));
   study.output = own / kFollowUpFolder / "fit";
   RunCalibration(study, &progress);
   planned.fitted = OpenRun(study.output);
-  planned.decision = LoadDecisionInput(own / kDecisionFolder);
+  planned.decision = ReadDecisionInput(own / kDecisionFolder);
   planned.diagnosis = ReadDiagnosisFile(own / kDiagnosisFile);
   planned.diagnosis.decision = Decide(planned.decision).record;
   planned.protocols = StockProtocols(planned.fitted.study, planned.fitted.mesh);
@@ -103,7 +103,7 @@ FollowUp Follow(const PlannedCase& planned, const PlannedOutcome& outcome, int n
   for (size_t k = 0; k < planned.plan.rivals.size(); ++k)
     if (planned.trial.Hides(planned.plan.rivals[k].effect)) made.predicted = outcome.named[k];
   if (fs::exists(folder / kOutcomeFile)) {
-    made.outcome = LoadTrialOutcome(folder);
+    made.outcome = ReadTrialOutcome(folder);
     return made;
   }
   const Protocol& protocol =
@@ -138,7 +138,7 @@ std::optional<FollowUp> FromJson(const nlohmann::json& json, const fs::path& fol
   FollowUp made;
   made.protocol = json.at("protocol");
   if (!json.at("predicted").is_null()) made.predicted = json.at("predicted");
-  made.outcome = LoadTrialOutcome(folder);
+  made.outcome = ReadTrialOutcome(folder);
   return made;
 }
 
@@ -172,7 +172,7 @@ CaseFollowUps MakeFollowUps(const fs::path& own) {
 std::vector<fs::path> OpenCasesIn(const fs::path& folder) {
   std::vector<fs::path> open;
   for (const fs::path& own : CasesIn(folder))
-    if (fs::exists(own / kOutcomeFile) && IsOpen(LoadCase(own), LoadTrialOutcome(own)))
+    if (fs::exists(own / kOutcomeFile) && IsOpen(ReadCase(own), ReadTrialOutcome(own)))
       open.push_back(own);
   return open;
 }
@@ -231,7 +231,7 @@ void WriteFollowUps(const CaseFollowUps& made, const fs::path& own) {
   WriteFileAtomically(own / kFollowUpFile, all.dump(2) + "\n");
 }
 
-std::optional<CaseFollowUps> LoadFollowUps(const fs::path& own) {
+std::optional<CaseFollowUps> ReadFollowUps(const fs::path& own) {
   const fs::path file = own / kFollowUpFile;
   if (!fs::exists(file)) return std::nullopt;
   return ReadJsonFile(file, [&](const nlohmann::json& json) {
@@ -245,14 +245,14 @@ FollowUpReport ReportFollowUps(const fs::path& folder) {
   FollowUpTally best{.choice = "best of the plan"}, random{.choice = "another one at random"};
   for (const fs::path& own : OpenCasesIn(folder)) {
     ++report.open;
-    const std::optional<CaseFollowUps> made = LoadFollowUps(own);
+    const std::optional<CaseFollowUps> made = ReadFollowUps(own);
     report.waiting += !made;
     if (!made) continue;
     if (!made->best || !made->random) {
       ++report.unpaired;
       continue;
     }
-    const TrialCase trial = LoadCase(own);
+    const TrialCase trial = ReadCase(own);
     Count(trial, *made->best, &best);
     Count(trial, *made->random, &random);
   }

@@ -61,7 +61,7 @@ bool RunFollowUps(const std::filesystem::path& folder, int workers);
 // Writes and reads what a case's folder keeps; the outcomes of its follow-ups stand in folders of
 // their own, best/ and random/. Nothing is read where no follow-ups were made. Throw InputError.
 void WriteFollowUps(const CaseFollowUps& made, const std::filesystem::path& own);
-std::optional<CaseFollowUps> LoadFollowUps(const std::filesystem::path& own);
+std::optional<CaseFollowUps> ReadFollowUps(const std::filesystem::path& own);
 // The folders in which outcomes of follow-ups of a case stand or will stand.
 std::vector<std::filesystem::path> FollowUpFolders(const std::filesystem::path& own);
 

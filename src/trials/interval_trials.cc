@@ -131,7 +131,7 @@ nlohmann::json ToJson(const std::vector<JudgedParameter>& parameters) {
   return {{"schema_version", kIntervalsVersion}, {"parameters", list}};
 }
 
-std::vector<JudgedParameter> LoadJudged(const std::filesystem::path& file) {
+std::vector<JudgedParameter> ReadJudged(const std::filesystem::path& file) {
   return ReadJsonFile(file, [&](const nlohmann::json& json) {
     if (json.at("schema_version") != kIntervalsVersion)
       throw InputError(file.string() + ": is of another version of the program; make it again");
@@ -178,7 +178,7 @@ void FitDraw(const std::filesystem::path& folder) {
   Progress progress({.style = ProgressStyle::kSilent});
   const CalibrationRecord record = RunCalibration(study, &progress);
   if (!record.usable) throw InputError(folder.string() + ": " + record.message);
-  const std::vector<JudgedParameter> judged = Judge(record, LoadCase(folder));
+  const std::vector<JudgedParameter> judged = Judge(record, ReadCase(folder));
   WriteFileAtomically(folder / kIntervalsFile, ToJson(judged).dump(2) + "\n");
 }
 
@@ -309,7 +309,7 @@ IntervalReport ReportIntervals(const std::filesystem::path& folder) {
   std::map<std::string, std::vector<double>> deviations;
   const std::vector<std::filesystem::path> draws = CasesIn(folder);
   if (!draws.empty())  // all draws of a suite lack the same
-    for (const HiddenEffect& hidden : LoadCase(draws.front()).hidden)
+    for (const HiddenEffect& hidden : ReadCase(draws.front()).hidden)
       report.missing.push_back(hidden.type);
   for (const std::filesystem::path& draw : draws) {
     if (!std::filesystem::exists(draw / kIntervalsFile)) {
@@ -318,7 +318,7 @@ IntervalReport ReportIntervals(const std::filesystem::path& folder) {
       report.failed.push_back(draw.filename().string() + ": " + reason);
       continue;
     }
-    for (const JudgedParameter& parameter : LoadJudged(draw / kIntervalsFile)) {
+    for (const JudgedParameter& parameter : ReadJudged(draw / kIntervalsFile)) {
       if (!deviations.contains(parameter.name)) names.push_back(parameter.name);
       deviations[parameter.name].push_back(parameter.deviations);
     }

@@ -319,7 +319,7 @@ void WriteCase(const TrialCase& trial, const std::filesystem::path& folder) {
   WriteFileAtomically(folder / kTruthFile, TextOfCase(trial));
 }
 
-TrialCase LoadCase(const std::filesystem::path& folder) {
+TrialCase ReadCase(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kTruthFile;
   return ReadJsonFile(file, [&](const nlohmann::json& json) {
     TrialCase trial;

@@ -126,7 +126,7 @@ HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_
 std::string TextOfCase(const TrialCase& trial);
 // Write and read truth.json in a folder. Both throw InputError if the file cannot be used.
 void WriteCase(const TrialCase& trial, const std::filesystem::path& folder);
-TrialCase LoadCase(const std::filesystem::path& folder);
+TrialCase ReadCase(const std::filesystem::path& folder);
 
 // Number (i, j) of a stream of standard normal draws; it depends on the seed of the case and on
 // these three numbers alone.

@@ -90,12 +90,12 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
   std::vector<double> seconds;
   std::vector<FinishedTrial> finished;
   for (const std::filesystem::path& own : CasesIn(folder)) {
-    const TrialCase trial = LoadCase(own);
+    const TrialCase trial = ReadCase(own);
     if (!std::filesystem::exists(own / kOutcomeFile)) {
       report.unfinished.push_back(trial.name);
       continue;
     }
-    const TrialOutcome outcome = LoadTrialOutcome(own);
+    const TrialOutcome outcome = ReadTrialOutcome(own);
     finished.push_back({trial, outcome});
     const std::string group = RowOf(trial);
     tallies[group].group = group;

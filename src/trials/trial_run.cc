@@ -92,7 +92,7 @@ std::optional<RecordedPower> SimulatePowerOfCase(const TrialCase& trial,
   const RecordedPower invisible{.truth = {truth}, .open = 1, .most_wrong = ""};
   if (is_known) return PowerToFind(decided, truth, true).value_or(invisible);
   if (!std::filesystem::exists(output / kWithRemovedFolder / "decision.json")) return std::nullopt;
-  return PowerToFind(LoadDecisionInput(output / kWithRemovedFolder), truth, false)
+  return PowerToFind(ReadDecisionInput(output / kWithRemovedFolder), truth, false)
       .value_or(invisible);
 }
 
@@ -146,7 +146,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem:
   outcome.ranked = RankedTypes(diagnosis.ranking);
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 
-  const TrialCase trial = LoadCase(folder);
+  const TrialCase trial = ReadCase(folder);
   outcome.error_before =
       diagnosis.errors.without_nuisances * EstimatedOverTrueNoise(trial, problem);
   if (!trial.hidden.empty()) Compare(trial, problem, calibration.parameters, diagnosis, &outcome);
@@ -174,7 +174,7 @@ void WriteTrialOutcome(const TrialOutcome& outcome, const std::filesystem::path&
   WriteFileAtomically(folder / kOutcomeFile, all.dump(2) + "\n");
 }
 
-TrialOutcome LoadTrialOutcome(const std::filesystem::path& folder) {
+TrialOutcome ReadTrialOutcome(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kOutcomeFile;
   return ReadJsonFile(file, [&](const nlohmann::json& json) {
     const int version = json.at("schema_version");
@@ -202,9 +202,9 @@ bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output
   if (!std::filesystem::exists(output / kDecisionFolder / "decision.json") ||
       !std::filesystem::exists(output / kOutcomeFile))
     return false;
-  const DecisionInput input = LoadDecisionInput(output / kDecisionFolder);
+  const DecisionInput input = ReadDecisionInput(output / kDecisionFolder);
   const Decision decision = Decide(input);
-  TrialOutcome outcome = LoadTrialOutcome(output);
+  TrialOutcome outcome = ReadTrialOutcome(output);
   outcome.verdict = decision.verdict;
   outcome.named = decision.names;
   outcome.probabilities = decision.record.probabilities;

@@ -50,7 +50,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem:
 
 // Write and read outcome.json in a folder. Both throw InputError if the file cannot be used.
 void WriteTrialOutcome(const TrialOutcome& outcome, const std::filesystem::path& folder);
-TrialOutcome LoadTrialOutcome(const std::filesystem::path& folder);
+TrialOutcome ReadTrialOutcome(const std::filesystem::path& folder);
 
 // Decides again upon what RunCase() has kept in `output`, with the rules as they are now, and
 // replaces what outcome.json there has from the decision. False where nothing was kept. Throws

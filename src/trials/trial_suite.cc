@@ -304,7 +304,7 @@ bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
   MakeFolder(own);
   if (std::filesystem::exists(own / kTruthFile)) {
     // If only the truth was kept, the recordings are simulated again.
-    if (!std::filesystem::exists(own / kExperimentFile)) SimulateAndSeal(LoadCase(own), own);
+    if (!std::filesystem::exists(own / kExperimentFile)) SimulateAndSeal(ReadCase(own), own);
     return true;
   }
   std::string reasons;

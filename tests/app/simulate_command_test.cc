@@ -94,9 +94,12 @@ TEST(CommandLine, WhatIsWrittenStaysInItsFolder) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a/body.pvd"));
   EXPECT_FALSE(std::filesystem::exists(folder / "ESC"));
 
-  std::ofstream(folder / "a/e.yaml") << begin << recording("a b") << recording("a/b");
+  std::ofstream(folder / "a/e.yaml")
+      << "material: {law: neo_hookean, young_modulus: 0.12 MPa, poisson_ratio: -0.2}\n"
+      << begin << recording("a b") << recording("a/b");
   const Ending same = Lacuna(simulate);
   EXPECT_EQ(same.status, 2);
+  EXPECT_THAT(same.said, HasSubstr("warning: neo_hookean.poisson_ratio is -0.2: an auxetic"));
   EXPECT_THAT(same.said, HasSubstr("recording a/b would have the same folder, a_b, as another"));
 }
 
@@ -112,6 +115,9 @@ TEST(CommandLine, ANegativePoissonRatioOfASceneCausesAWarning) {
   EXPECT_EQ(ending.status, 0) << ending.said;
   EXPECT_THAT(ending.said, HasSubstr("warning: corotational.poisson_ratio is -0.3: an auxetic"));
   EXPECT_TRUE(std::filesystem::exists(folder / "run/body.pvd"));
+  const Ending validated = Lacuna("validate " + (folder / "scene.yaml").string());
+  EXPECT_EQ(validated.status, 0) << validated.said;
+  EXPECT_THAT(validated.said, HasSubstr("warning: corotational.poisson_ratio is -0.3: an auxetic"));
 }
 
 TEST(CommandLine, AnUnwritableOutputIsToldBeforeTheComputation) {

@@ -39,8 +39,8 @@ double Median(std::vector<double> values) {
 std::vector<MisfitDirection> DirectionsOfEffects(const CalibrationProblem& problem) {
   const PredictionStudy& study = problem.study();
   std::vector<MisfitDirection> directions;
-  for (const CandidateEffect& candidate :
-       MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study), {}}))
+  for (const CandidateEffect& candidate : MakeCandidates(
+           {*problem.body(), study.effects, ScaleOf(study), study.time_step, Duration(study), {}}))
     for (const int parameter : candidate.amplitude)
       directions.push_back({.perturbation = {.effect = candidate.effect, .parameter = parameter}});
   return directions;

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <string>
@@ -155,7 +157,10 @@ TEST(CalibrationProblem, PredictsRecordingsSideBySideAsOneAfterTheOther) {
     const CalibrationProblem own(study, BarMesh({6, 2, 2}, 1));
     prediction[k] = own.Predict(own.Start(), true);
     linearised[k] = own.Linearise(own.Start(), {.with_jacobian = true});
-    misfits[k] = MisfitsOf(own, own.Start());
+    std::atomic<int64_t> frames = 0;
+    misfits[k] = MisfitsOf(own, own.Start(), /*known=*/nullptr, [&] { ++frames; });
+    EXPECT_EQ(frames, own.LinearisedFrames()) << "both recordings are fitted";
+    EXPECT_EQ(frames, 2 * kFrames);
     ASSERT_TRUE(prediction[k].usable) << prediction[k].message;
     ASSERT_TRUE(linearised[k].usable) << linearised[k].message;
     ASSERT_EQ(misfits[k].size(), 2u);

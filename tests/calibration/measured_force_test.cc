@@ -233,7 +233,7 @@ TEST(MeasuredForce, ARunKeepsItsErrorsAndItsCurve) {
   const CalibrationRecord record =
       RunCalibration(ReadPredictionStudy(Config::Load(folder / "study.yaml")), &progress);
   ASSERT_TRUE(record.usable) << record.message;
-  const CalibrationRecord read = LoadCalibration(folder / "run");
+  const CalibrationRecord read = ReadCalibration(folder / "run");
   const FittedReaction& jaw = read.recordings.at(0).reactions.at(0);
   EXPECT_TRUE(jaw.deviation_is_estimated);
   EXPECT_GT(jaw.deviation, 0.004);  // from 16 readings
@@ -242,7 +242,7 @@ TEST(MeasuredForce, ARunKeepsItsErrorsAndItsCurve) {
   EXPECT_EQ(jaw.in_fit.rms, record.recordings[0].reactions.at(0).in_fit.rms);
   EXPECT_GT(read.parameters.at(0).shares.value().forces, 0.99);
 
-  const CsvTable curve = LoadCsv(folder / "run/calibration/reactions.csv");
+  const CsvTable curve = ReadCsv(folder / "run/calibration/reactions.csv");
   ASSERT_EQ(curve.size(), 9u);
   ASSERT_EQ(curve[0].values.size(), kPulledFrames);
   EXPECT_EQ(curve[6].name, "displacement_m");

@@ -60,7 +60,7 @@ void Misplace(const std::filesystem::path& file) {
 
 // Lists the markers of a recording in the opposite order, under their names.
 void ReverseMarkers(const std::filesystem::path& folder) {
-  const CsvTable table = LoadCsv(folder / "markers.csv");
+  const CsvTable table = ReadCsv(folder / "markers.csv");
   CsvTable reversed{table[0]};
   for (size_t m = table.size() / 3; m > 0; --m)
     reversed.insert(reversed.end(), {table[3 * m - 2], table[3 * m - 1], table[3 * m]});

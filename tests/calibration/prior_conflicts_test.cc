@@ -75,10 +75,13 @@ TEST_F(MarkerConflictsOfABar, BeginBeyondThreeDeviationsOfANumberAndFurtherOutFo
   EXPECT_EQ(Conflicts().size(), 1u);
 }
 
-// The plausible range of the mass damping is 0 to 20 1/s, so that its prior is 1 ± 10 1/s.
+// The plausible range of the mass damping is 0 to 20 1/s in the reference body, so that its prior
+// there is 1 ± 10 1/s.
 TEST_F(MarkerConflictsOfABar, IncludeAParameterFarFromItsDefaultPrior) {
-  EXPECT_TRUE(ConflictsAt(0.15e6, 30.9).empty());
-  const std::vector<PriorConflict> conflicts = ConflictsAt(0.15e6, 33);
+  const double deviation =
+      10 * std::sqrt(1.5) * (kReferenceBody.length / study_.recordings[0].recording.size);
+  EXPECT_TRUE(ConflictsAt(0.15e6, 1 + 2.99 * deviation).empty());
+  const std::vector<PriorConflict> conflicts = ConflictsAt(0.15e6, 1 + 3.2 * deviation);
   ASSERT_EQ(conflicts.size(), 1u);
   const auto& damping = std::get<ModelParameterConflict>(conflicts[0]);
   EXPECT_EQ(damping.parameter, "mass_damping.alpha");

@@ -47,14 +47,14 @@ TEST(ComparedMotion, AddsStrainAndHeightAndWritesFieldsAndTheForce) {
   EXPECT_TRUE(bar.height_by_gravity);
   // The number that the fit has printed.
   EXPECT_NEAR(bar.parts[0].error.rms_over_sigma,
-              LoadCalibration(run).recordings[0].in_fit.rms_over_sigma, 1e-9);
+              ReadCalibration(run).recordings[0].in_fit.rms_over_sigma, 1e-9);
   ExpectTrendsOfTheMotion(bar);
   ASSERT_TRUE(bar.force && bar.force->usable);
   EXPECT_THAT(DescribeComparison(comparison.record),
               Contains(HasSubstr("it removes energy from the motion")));
 
   WriteComparison(comparison, run);
-  const CsvTable force = LoadCsv(run / "comparison/unexplained_force.csv");
+  const CsvTable force = ReadCsv(run / "comparison/unexplained_force.csv");
   EXPECT_EQ(force[0].values.size(), comparison.forces.at(0)->history.times.size());
   std::ifstream stream(run / "comparison/comparison.json");
   const nlohmann::json record = nlohmann::json::parse(stream);

@@ -37,12 +37,12 @@ TEST(Comparison, WritesItsFilesAndLeavesTheRunUnchanged) {
   EXPECT_EQ(held_out.at("worst_period").at("first_frame"), 90);
   EXPECT_GT(held_out.at("rms_over_sigma"), 3);
   EXPECT_EQ(record.at("text").size(), 3u);
-  const CsvTable by_frame = LoadCsv(run / "comparison/by_frame.csv");
+  const CsvTable by_frame = ReadCsv(run / "comparison/by_frame.csv");
   ASSERT_EQ(by_frame[0].values.size(), PlantedRun::kFrames);
   EXPECT_EQ(by_frame[4].name, "points");
   // Every tenth frame does not show marker 3.
   EXPECT_EQ(by_frame[4].values[0], PlantedRun::kMarkers - 1);
-  const CsvTable by_marker = LoadCsv(run / "comparison/by_marker.csv");
+  const CsvTable by_marker = ReadCsv(run / "comparison/by_marker.csv");
   EXPECT_EQ(by_marker[0].values.size(), 2 * PlantedRun::kMarkers);
   EXPECT_THAT(FileContent(run / "comparison/by_quantity.csv"), HasSubstr("\n0,1,speed_m_per_s,"));
   // Its own files do not disturb another comparison.

@@ -67,7 +67,7 @@ TEST(Comparison, EachMarkerCountsInUnitsOfItsOwnNoise) {
   }
   EXPECT_NEAR(recording.noise_floor.floor, PlantedRun::kNoise, 0.3 * PlantedRun::kNoise);
   WriteComparison(comparison, run);
-  const CsvTable by_marker = LoadCsv(run / "comparison/by_marker.csv");
+  const CsvTable by_marker = ReadCsv(run / "comparison/by_marker.csv");
   ASSERT_EQ(by_marker[5].name, "rms_over_sigma");
   ASSERT_EQ(by_marker[5].values.size(), 2 * PlantedRun::kMarkers);
   for (const double multiple : by_marker[5].values) EXPECT_NEAR(multiple, 1, 0.25);

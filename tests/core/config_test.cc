@@ -99,6 +99,36 @@ TEST(Config, SaysThatTheDecimalSeparatorIsAPoint) {
     EXPECT_THAT(refusal_of(other), AllOf(HasSubstr("got"), Not(HasSubstr("separator")))) << other;
 }
 
+// The part before the comma is a value that may stand there.
+TEST(Config, FindsADecimalCommaAfterANumberThatIsAllowed) {
+  const auto refusal_of = [](const char* text) {
+    const Config config = Config::Parse(text, "a.yaml");
+    try {
+      config.Quantity("noise", kLength, kNotNegative, 0);
+      config.Text("law", "linear");
+      config.RefuseUnknownKeys();
+    } catch (const InputError& problem) {
+      return std::string(problem.what());
+    }
+    return std::string("nothing was refused");
+  };
+  EXPECT_EQ(refusal_of("{noise: 0,2 mm, law: linear}"),
+            "a.yaml:1:11: 2 mm: unknown key; the decimal separator must be a point: \"0.2 mm\"");
+  EXPECT_THAT(refusal_of("noise: 0,2 mm"), HasSubstr("a.yaml:1:8: noise: got \"0,2 mm\" (the "
+                                                     "decimal separator must be a point"));
+  for (const char* other : {"{noise: 0, 2x}", "{noise: 0, 2 mm: 1}", "{law: linear, 2 mm}"})
+    EXPECT_THAT(refusal_of(other), AllOf(HasSubstr("unknown key"), Not(HasSubstr("separator"))))
+        << other;
+}
+
+TEST(Config, SaysThatACommaSeparatesTheEntriesOfAVector) {
+  const Config config = Config::Parse("a: [0,5 mm, 0, 1 mm]\nb: [1 mm, 2 mm]\n", "a.yaml");
+  ExpectInputError([&] { config.Vector("a", kLength); },
+                   AllOf(HasSubstr("got 4 entries; expected three"), HasSubstr("must be a point")));
+  ExpectInputError([&] { config.Vector("b", kLength); },
+                   AllOf(HasSubstr("got 2 entries"), Not(HasSubstr("point"))));
+}
+
 TEST(Config, RefusesUnknownKeysWithTheNearestKnownOne) {
   const Config beam = Config::Parse("material:\n  young_modulos: 1 MPa\n", "a.yaml");
   const Config material = beam.Child("material");

@@ -192,7 +192,9 @@ TEST(Expression, ReportsErrorsWithTheirColumn) {
       {"x(2)", "column 2: x is not a function; write a product with \"*\""},
       {"pi(2)", "column 3: pi is not a function; write a product with \"*\""},
       {"x > 2", "column 3: unknown operator \">\"; write a condition with step(...)"},
-      {"0,02 * x", "column 2: unexpected \",\" outside the arguments of a function"},
+      {"0,02 * x",
+       "column 2: unexpected \",\" outside the arguments of a function; the decimal separator must "
+       "be a point"},
       {"3 * stifness", "column 5: unknown name \"stifness\"; did you mean \"stiffness\"?"},
       {"snh(x)", "column 1: unknown function \"snh\"; did you mean \"sin\"?"},
       {"qqqqqq", "column 1: unknown name \"qqqqqq\""},

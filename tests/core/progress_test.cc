@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace lacuna {
@@ -115,6 +117,26 @@ TEST_F(ProgressTest, LiveLineIsRewrittenInPlaceAndKeptAtTheEnd) {
   EXPECT_THAT(stream_.str(), HasSubstr("1:00 min, 1:00 min remaining"));
   progress.End("done");
   EXPECT_EQ(stream_.str().back(), '\n');
+}
+
+TEST_F(ProgressTest, CountsCallsFromSeveralThreads) {
+  Progress progress(Options(ProgressStyle::kJsonLines));
+  progress.Begin("predict", 200);
+  const std::function<void()> count = StageCounter(&progress);
+  std::vector<std::thread> threads;
+  for (int thread = 0; thread < 2; ++thread)
+    threads.emplace_back([&] {
+      for (int frame = 0; frame < 100; ++frame) count();
+    });
+  for (std::thread& thread : threads) thread.join();
+  progress.Begin("score", 0);
+  const std::function<void()> count_anew = StageCounter(&progress);
+  count_anew();
+  progress.End();
+  const std::vector<json> lines = Lines();
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_EQ(lines[1]["done"], 200);
+  EXPECT_EQ(lines[3]["done"], 1);
 }
 
 TEST_F(ProgressTest, SilentStyleWritesNothing) {

@@ -63,6 +63,24 @@ TEST(Quantity, RefusesInvalidTextAndSaysWhatWasExpected) {
   ExpectRefused("3 kmin", kTime, "unknown unit");  // a minute takes no prefix
 }
 
+TEST(Quantity, SaysHowANumberWithADecimalCommaIsWritten) {
+  ExpectRefused("0,2 mm", kLength,
+                "got \"0,2 mm\" (the decimal separator must be a point: \"0.2 mm\"); expected a "
+                "length");
+  ExpectRefused("-12,50 mm", kLength, "point: \"-12.50 mm\"");
+  ExpectRefused("0,05", kDimensionless, "point: \"0.05\"");
+  ExpectRefused(",5 mm", kLength, "point: \".5 mm\"");
+  try {
+    ParseAnyQuantity("0,2 N/kg");
+    ADD_FAILURE() << "nothing was refused";
+  } catch (const std::invalid_argument& problem) {
+    EXPECT_THAT(problem.what(), testing::HasSubstr("point: \"0.2 N/kg\""));
+  }
+  ExpectRefused("1,234.5 mm", kLength, "(unknown unit \",\")");
+  ExpectRefused("1,", kDimensionless, "(unknown unit \",\")");
+  ExpectRefused("0, mm", kLength, "(unknown unit \",\")");
+}
+
 TEST(Quantity, DeterminesTheDimensionOfAnyUnit) {
   const MeasuredQuantity pull = ParseAnyQuantity("3 N/kg");
   EXPECT_DOUBLE_EQ(pull.value, 3);

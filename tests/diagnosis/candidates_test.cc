@@ -17,7 +17,7 @@ std::vector<CandidateEffect> CandidatesOf(const TetMesh& mesh, const std::string
   const std::vector<std::shared_ptr<const Effect>> effects{
       MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}})};
   std::vector<CandidateEffect> chosen;
-  for (const CandidateEffect& candidate : MakeCandidates({body, effects, 0.001, 1}))
+  for (const CandidateEffect& candidate : MakeCandidates({body, effects, kReferenceBody, 0.001, 1}))
     if (candidate.type == type) chosen.push_back(candidate);
   return chosen;
 }
@@ -79,7 +79,7 @@ TEST(Candidates, TrySupportsOnEachSideThatIsNotGripped) {
   for (int i = 0; i < body.NodeCount(); ++i) gripped[i] = bar.nodes(0, i) < 0.001;
   std::vector<CandidateEffect> supports, slipping;
   for (const CandidateEffect& candidate :
-       MakeCandidates({body, effects, 0.001, 1, {}, {}, gripped})) {
+       MakeCandidates({body, effects, kReferenceBody, 0.001, 1, {}, {}, gripped})) {
     if (candidate.type == "elastic_support") supports.push_back(candidate);
     if (candidate.type == "slipping_support") slipping.push_back(candidate);
   }
@@ -151,7 +151,7 @@ TEST(Candidates, DoNotIncludeWhatTheModelExcludes) {
       MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}}),
       MakeEffect(
           Config::Parse("{type: swelling_field, strain: 1 %, field: \"Z/0.02\"}", "a.yaml"))};
-  for (const CandidateEffect& candidate : MakeCandidates({body, effects, 0.001, 1}))
+  for (const CandidateEffect& candidate : MakeCandidates({body, effects, kReferenceBody, 0.001, 1}))
     EXPECT_NE(candidate.type, "swelling");
 }
 

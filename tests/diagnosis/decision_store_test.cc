@@ -34,7 +34,7 @@ TEST(DecisionStore, DecidesAgainAsBefore) {
   input.in_place_of_adopted.push_back({"fibres", 25, synthetic.With(SyntheticSpace::Noise(19))});
   const TemporaryFolder folder;
   WriteDecisionInput(input, folder / "decision");
-  const DecisionInput read = LoadDecisionInput(folder / "decision");
+  const DecisionInput read = ReadDecisionInput(folder / "decision");
   EXPECT_EQ(read.failed_pairs, input.failed_pairs);
   const Decision before = Decide(input), after = Decide(read);
   EXPECT_EQ(after.verdict, before.verdict);
@@ -69,11 +69,11 @@ TEST(DecisionStore, RefusesAMatrixThatIsMissingOrOfAnotherDecision) {
   const std::filesystem::path own = *MatricesIn(folder / "one").begin();
   std::filesystem::copy_file(*MatricesIn(folder / "other").begin(), own,
                              std::filesystem::copy_options::overwrite_existing);
-  const auto load = [&] { LoadDecisionInput(folder / "one"); };
-  EXPECT_THAT(load, ThrowsMessage<InputError>(
+  const auto read = [&] { ReadDecisionInput(folder / "one"); };
+  EXPECT_THAT(read, ThrowsMessage<InputError>(
                         AllOf(HasSubstr(own.string()), HasSubstr("run `lacuna diagnose` again"))));
   std::filesystem::remove(own);
-  EXPECT_THAT(load, ThrowsMessage<InputError>(HasSubstr(own.string())));
+  EXPECT_THAT(read, ThrowsMessage<InputError>(HasSubstr(own.string())));
 }
 
 // A writer that is killed before it replaces decision.json leaves new matrices beside the old ones.
@@ -85,12 +85,12 @@ TEST(DecisionStore, KeepsTheDecisionBeforeUntilTheNewOneIsComplete) {
   WriteDecisionInput(after, folder / "other");
   for (const std::filesystem::path& file : MatricesIn(folder / "other"))
     std::filesystem::copy_file(file, folder / "kept" / file.filename());
-  EXPECT_EQ(LoadDecisionInput(folder / "kept").baseline.model.squares(),
+  EXPECT_EQ(ReadDecisionInput(folder / "kept").baseline.model.squares(),
             before.baseline.model.squares());
   // Once it is complete, the old matrices are gone, those of earlier versions included.
   std::filesystem::copy_file(*of_before.begin(), folder / "kept" / "products_0.npy");
   WriteDecisionInput(after, folder / "kept");
-  EXPECT_EQ(LoadDecisionInput(folder / "kept").baseline.model.squares(),
+  EXPECT_EQ(ReadDecisionInput(folder / "kept").baseline.model.squares(),
             after.baseline.model.squares());
   EXPECT_EQ(MatricesIn(folder / "kept").size(), 2u);
   for (const std::filesystem::path& file : of_before) EXPECT_FALSE(std::filesystem::exists(file));
@@ -99,7 +99,7 @@ TEST(DecisionStore, KeepsTheDecisionBeforeUntilTheNewOneIsComplete) {
 TEST(DecisionStore, AsksForANewDiagnosisWhereTheFormatIsOld) {
   const TemporaryFolder folder;
   std::ofstream(folder / "decision.json") << R"({"schema_version": 6, "baseline": {}})";
-  EXPECT_THAT([&] { LoadDecisionInput(folder.Path()); },
+  EXPECT_THAT([&] { ReadDecisionInput(folder.Path()); },
               ThrowsMessage<InputError>(
                   AllOf(HasSubstr("format 6"), HasSubstr("run `lacuna diagnose` again"))));
 }

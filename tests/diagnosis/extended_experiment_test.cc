@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <variant>
 
+#include "calibration/prior_conflicts.h"
 #include "diagnosis/candidates.h"
 #include "diagnosis/diagnosis_run.h"
 #include "diagnosis/model_change.h"
@@ -49,11 +51,12 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   ASSERT_TRUE(modulus.log_scale);
   modulus.prior_mean = 1.4e5;
   modulus.prior_deviation = 0.05;
+  modulus.has_default_prior = false;
 
   ScoredEffect scored;
   const Body body = MakeBody(fitted.mesh, 1000);
-  for (const CandidateEffect& candidate :
-       MakeCandidates({body, fitted.study.effects, fitted.study.time_step, 0.25}))
+  for (const CandidateEffect& candidate : MakeCandidates(
+           {body, fitted.study.effects, ScaleOf(fitted.study), fitted.study.time_step, 0.25}))
     if (candidate.type == "mass_damping") scored.candidate = candidate;
   ASSERT_NE(scored.candidate.effect, nullptr);
   scored.score.size = Eigen::VectorXd::Constant(1, 2.5);
@@ -69,6 +72,7 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   EXPECT_EQ(extended.effects.back()->Parameters()[0], 2.5);
   ASSERT_EQ(extended.fitted.size(), 2u);
   EXPECT_EQ(extended.fitted[0].prior.prior_mean, modulus.prior_mean);
+  EXPECT_FALSE(extended.fitted[0].prior.has_default_prior);
   EXPECT_NEAR(extended.fitted[0].prior.prior_deviation, modulus.prior_deviation, 1e-12);
   const CalibratedParameter &alpha = extended.fitted[1].prior,
                             expected = WithEffect(fitted.study, scored).fitted[1].prior;
@@ -137,8 +141,8 @@ TEST(ExtendedExperiment, ANameIsReadBackWhateverCharactersItHolds) {
   fitted.study.name = "bar: #2";
   ScoredEffect scored;
   const Body body = MakeBody(fitted.mesh, 1000);
-  for (const CandidateEffect& candidate :
-       MakeCandidates({body, fitted.study.effects, fitted.study.time_step, 0.25}))
+  for (const CandidateEffect& candidate : MakeCandidates(
+           {body, fitted.study.effects, ScaleOf(fitted.study), fitted.study.time_step, 0.25}))
     if (candidate.type == "mass_damping") scored.candidate = candidate;
   scored.score.size = Eigen::VectorXd::Constant(1, 2.5);
   const PredictionStudy extended =
@@ -210,6 +214,39 @@ TEST(ExtendedExperiment, ALawTakesTheOthersPlaceAndAPlaneIsAdded) {
               1e-12 * modulus.prior_deviation);
 }
 
+// What the program itself wrote into the file does not count as what the user says. Nothing is
+// simulated: the markers stand still but for one frame.
+TEST(ExtendedExperiment, AConflictWithADefaultPriorStaysOne) {
+  const TemporaryFolder folder;
+  std::vector<Eigen::Matrix3Xd> frames(kFrames, BarMarkerPlaces());
+  frames[kFrames / 3].row(1).array() += 0.003;
+  WriteBarRecording(folder.Path(), frames);
+  std::ofstream(folder / "bar.yaml")
+      << BarExperiment(folder.Path(), {{"  - {type: mass_damping, alpha: 1 1/s}\n", ""},
+                                       {", {name: mass_damping.alpha}", ""}});
+  FittedRun fitted;
+  fitted.study = ReadPredictionStudy(Config::Load(folder / "bar.yaml"));
+  ScoredEffect damping;
+  damping.candidate.type = "mass_damping";
+  damping.candidate.effect = MakeEffect("mass_damping", {{"alpha", 2}});
+  damping.candidate.amplitude = {0};
+  damping.score.size = Eigen::VectorXd::Constant(1, 2);
+  const PredictionStudy extended =
+      ReadPredictionStudy(Config::Load(WriteExtendedExperiment(fitted, folder / "bar", damping)));
+  ASSERT_EQ(extended.fitted.size(), 2u);
+
+  const CalibrationProblem problem(extended, BarMesh({2, 1, 1}, 1));
+  Eigen::VectorXd values = problem.Start();
+  values[0] *= std::exp(4 * extended.fitted[0].prior.prior_deviation);
+  values[1] = 4 * extended.fitted[1].prior.prior_deviation;
+  RecordingMisfit misfit;
+  misfit.has_own_places = false;  // no conflicts of markers
+  const std::vector<PriorConflict> conflicts = FindPriorConflicts(problem, values, {misfit});
+  ASSERT_EQ(conflicts.size(), 2u);
+  for (const PriorConflict& conflict : conflicts)
+    EXPECT_TRUE(std::get<ModelParameterConflict>(conflict).is_default);
+}
+
 // The sizes of a diagnosis count from the null value of a law, its parameters do not.
 TEST(ExtendedExperiment, ALawThatVanishesElsewhereStartsWhereItsRefitEnded) {
   const TemporaryFolder folder;
@@ -225,7 +262,7 @@ TEST(ExtendedExperiment, ALawThatVanishesElsewhereStartsWhereItsRefitEnded) {
   std::ofstream(folder / "diagnosis/of_fit.json")
       << R"({"settings": {"push": {"values": [7], "start": [5], "model": [], "amplitude": [0],
              "refined": {}, "known": {}, "replaces_material": false,
-             "young_modulus": 1e5}}})";
+             "body": {"young_modulus": 1e5, "density": 1000, "length": 0.1}}}})";
   RecordedEffect recorded;
   recorded.type = "push";
   recorded.sizes.resize(1);

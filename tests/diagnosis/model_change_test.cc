@@ -16,6 +16,9 @@ PredictionStudy ElasticBar(double young_modulus = 1e5) {
   PredictionStudy study;
   study.effects = {
       MakeEffect("neo_hookean", {{"young_modulus", young_modulus}, {"poisson_ratio", 0.4}})};
+  study.density = 1000;
+  study.recordings.resize(1);
+  study.recordings[0].recording.size = 0.1;
   return study;
 }
 
@@ -23,7 +26,8 @@ PredictionStudy ElasticBar(double young_modulus = 1e5) {
 CandidateEffect CandidateFor(const PredictionStudy& study, const std::string& type) {
   const Body body = MakeBody(BarMesh({4, 1, 1}, 1), 1000);
   CandidateEffect found;
-  for (const CandidateEffect& candidate : MakeCandidates({body, study.effects, 0.001, 1}))
+  for (const CandidateEffect& candidate :
+       MakeCandidates({body, study.effects, ScaleOf(study), 0.001, 1}))
     if (candidate.type == type) found = candidate;
   return found;
 }
@@ -153,7 +157,8 @@ TEST(WithEffect, MovesASupportAlongItsSide) {
   const PredictionStudy study = ElasticBar();
   ScoredEffect scored;
   const Body body = MakeBody(BarMesh({4, 1, 1}, 1), 1000);
-  for (const CandidateEffect& candidate : MakeCandidates({body, study.effects, 0.001, 1}))
+  for (const CandidateEffect& candidate :
+       MakeCandidates({body, study.effects, ScaleOf(study), 0.001, 1}))
     if (candidate.variant == "on the −z side at x = 40 mm") scored.candidate = candidate;
   ASSERT_EQ(scored.candidate.type, "elastic_support");
   scored.score.size = Eigen::VectorXd::Constant(1, 1e5);

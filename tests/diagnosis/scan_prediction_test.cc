@@ -267,7 +267,7 @@ TEST_F(CarriedBar, IsFittedFromItsScansAlone) {
   EXPECT_EQ(record.recordings[0].scan->places.cols(), 60);
   EXPECT_GT(record.recordings[0].scan->used, 0.9);
 
-  const CalibrationRecord read = LoadCalibration(folder_ / "run");
+  const CalibrationRecord read = ReadCalibration(folder_ / "run");
   EXPECT_EQ(read.scan_noise, record.scan_noise);
   EXPECT_EQ(read.recordings[0].scan->places, record.recordings[0].scan->places);
   const ComparisonRecord comparison = CompareRun(folder_ / "run").record;

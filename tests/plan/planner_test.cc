@@ -122,6 +122,22 @@ TEST(MakePlan, AsksToAddWhatAllHypothesesContain) {
               HasSubstr("add gravity to the model first"));
 }
 
+TEST(PlanReport, SaysWhichNuisancesCouldNotBeTried) {
+  PlanRecord plan;
+  plan.rivals = {{"drag", "drag", 1, 0.5, {"drag"}}};
+  for (const char* name : {"pull", "twist", "drop"}) {
+    PlannedOutcome& outcome = plan.outcomes.emplace_back();
+    outcome.name = name;
+    outcome.named = {0.9};
+  }
+  plan.outcomes[0].untried = plan.outcomes[2].untried = {{"mesh", "no other mesh could be made"}};
+  std::string text = PlanReport(plan);
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  EXPECT_THAT(text, HasSubstr("not tried with \"pull\" and \"drop\": mesh; no other mesh could"));
+  plan.outcomes[0].untried = plan.outcomes[2].untried = {};
+  EXPECT_THAT(PlanReport(plan), ::testing::Not(HasSubstr("not tried")));
+}
+
 TEST(PlanReport, NamesTheSizesOfAPairWithTheirEffects) {
   PlanRecord plan;
   plan.rivals = {{"drag", "drag", 0.6, 0.5, {"drag"}},

@@ -104,6 +104,9 @@ TEST_F(ReadingAPredictionStudy, TellsOfGravityThatTheModelLacks) {
                                     "has none")));
   study.recordings[0].effects.push_back(MakeGravity(Eigen::Vector3d(0, 0, -9.81)));
   EXPECT_THAT(StudyWarnings(study), ElementsAre());
+  study.recordings[0].effects.pop_back();
+  study.recordings[0].recording.object.gravity = Eigen::Vector3d::Zero();
+  EXPECT_THAT(StudyWarnings(study), ElementsAre()) << "in free fall";
 }
 
 TEST_F(ReadingAPredictionStudy, WarnsWhereNoFrameIsHeldOut) {

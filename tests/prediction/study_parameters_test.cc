@@ -61,7 +61,7 @@ TEST_F(ReadingAPredictionStudy, SharesSettingsThatFollowTheMaterial) {
   const PredictionStudy own = fitted(", poisson_ratio: 0.2");
   EXPECT_EQ(own.fitted[0].places.size(), 1u);
   EXPECT_EQ(ratio_with(own, 0.3), 0.2);
-  for (const ModelParameter& parameter : ModelParameters(own.effects))
+  for (const ModelParameter& parameter : ModelParameters(own.effects, ScaleOf(own)))
     EXPECT_NE(parameter.prior.name, "viscoelastic_branch.poisson_ratio") << "it is a setting";
 }
 
@@ -126,8 +126,27 @@ TEST_F(ReadingAPredictionStudy, TakesWhatIsKnownBeforeOfAParameter) {
   EXPECT_NEAR(fitted[0].prior.prior_deviation, 0.05, 1e-12);
   EXPECT_EQ(fitted[1].prior.prior_mean, 1) << "where it starts";
   EXPECT_NEAR(fitted[1].prior.prior_deviation, 0.5, 1e-12);
+  EXPECT_FALSE(fitted[1].prior.has_default_prior);
   EXPECT_THAT(MessageAfter({{"{name: young_modulus}", "{name: young_modulus, mean: 0.2 MPa}"}}),
               HasSubstr("parameters[0].mean: needs a `deviation` beside it"));
+}
+
+TEST_F(ReadingAPredictionStudy, KnowsWhichPriorsNobodyHasGiven) {
+  WriteBarRecording(folder_.Path(), Moving(0.001));
+  const auto is_default = [&](const std::string& entry) {
+    return ReadBarStudy(folder_.Path(), {{"{name: young_modulus}", entry}})
+        .fitted[0]
+        .prior.has_default_prior;
+  };
+  const std::string stated = "{name: young_modulus, mean: 140 kPa, deviation: 7 kPa";
+  EXPECT_TRUE(is_default("{name: young_modulus}"));
+  EXPECT_FALSE(is_default(stated + "}"));
+  EXPECT_FALSE(is_default(stated + ", prior: given}"));
+  EXPECT_TRUE(is_default(stated + ", prior: default}"));
+  EXPECT_THAT(MessageAfter({{"{name: young_modulus}", stated + ", prior: measured}"}}),
+              HasSubstr("parameters[0].prior: got \"measured\"; expected one of: given, default"));
+  EXPECT_THAT(MessageAfter({{"{name: young_modulus}", "{name: young_modulus, prior: default}"}}),
+              HasSubstr("parameters[0].prior: needs a `deviation` beside it"));
 }
 
 // Far outside of what is plausible, but possible.
@@ -148,22 +167,60 @@ TEST_F(ReadingAPredictionStudy, StartsFromAnyValueThatTheCardAllows) {
               ContainsRegex("material.young_modulus: got \"0 Pa\""));
 }
 
-// How stiff a branch of a body may be is a question of how stiff the body is.
-TEST(ModelParameters, HaveStressesThatArePlausibleInTheirBody) {
-  const auto typical = [](double young_modulus, const std::string& name) {
+// How stiff a branch of a body may be is a question of how stiff the body is, and which force acts
+// on it and which mass it carries, of its size, too.
+TEST(ModelParameters, HaveRangesThatArePlausibleInTheirBody) {
+  const auto typical = [](const BodyScale& body, const std::string& name) {
     const EffectList effects = {
-        MakeEffect("neo_hookean", {{"young_modulus", young_modulus}, {"poisson_ratio", 0.4}}),
+        MakeEffect("neo_hookean", {{"young_modulus", body.young_modulus}, {"poisson_ratio", 0.4}}),
         MakeEffect("viscoelastic_branch",
                    {{"modulus", 1e4}, {"relaxation_time", 1}, {"poisson_ratio", 0.4}}),
-        MakeEffect("mass_damping", {{"alpha", 1}})};
-    for (const ModelParameter& parameter : ModelParameters(effects))
+        MakeEffect("mass_damping", {{"alpha", 1}}),
+        MakeEffect("point_force", {{"force_x", 1},
+                                   {"force_y", 0},
+                                   {"force_z", 0},
+                                   {"centre_x", 0},
+                                   {"centre_y", 0},
+                                   {"centre_z", 0}}),
+        MakeEffect("attached_mass", {{"mass", 0.01},
+                                     {"centre_x", 0},
+                                     {"centre_y", 0},
+                                     {"centre_z", 0},
+                                     {"gravity_x", 0},
+                                     {"gravity_y", 0},
+                                     {"gravity_z", 0}}),
+        MakeEffect("drag", {{"coefficient", 1}})};
+    for (const ModelParameter& parameter : ModelParameters(effects, body))
       if (parameter.prior.name == name) return parameter.prior.typical;
     return 0.0;
   };
-  EXPECT_DOUBLE_EQ(typical(1e5, "viscoelastic_branch.modulus"), 1.5e5);
-  EXPECT_DOUBLE_EQ(typical(5e6, "viscoelastic_branch.modulus"), 7.5e6);
-  EXPECT_EQ(typical(5e6, "mass_damping.alpha"), typical(1e5, "mass_damping.alpha"));
-  EXPECT_EQ(typical(5e6, "young_modulus"), typical(1e5, "young_modulus"));
+  const BodyScale stiff = {1e7, 1000, 0.1}, large = {1e5, 1000, 1}, dense = {1e5, 4000, 0.1};
+  const auto ratio = [&](const BodyScale& body, const std::string& name) {
+    return typical(body, name) / typical(kReferenceBody, name);
+  };
+  EXPECT_DOUBLE_EQ(typical(kReferenceBody, "viscoelastic_branch.modulus"), 1.5e5);
+  EXPECT_DOUBLE_EQ(ratio(stiff, "viscoelastic_branch.modulus"), 100);
+  EXPECT_DOUBLE_EQ(ratio(large, "viscoelastic_branch.modulus"), 1);
+  EXPECT_DOUBLE_EQ(ratio(stiff, "point_force.force_x"), 100);
+  EXPECT_DOUBLE_EQ(ratio(large, "point_force.force_x"), 100) << "stress times area";
+  EXPECT_DOUBLE_EQ(ratio(stiff, "attached_mass.mass"), 1);
+  EXPECT_DOUBLE_EQ(ratio(large, "attached_mass.mass"), 1000);
+  EXPECT_DOUBLE_EQ(ratio(dense, "attached_mass.mass"), 4);
+  EXPECT_DOUBLE_EQ(ratio(stiff, "mass_damping.alpha"), 10) << "as the natural frequencies";
+  EXPECT_DOUBLE_EQ(ratio(large, "mass_damping.alpha"), 0.1);
+  EXPECT_DOUBLE_EQ(ratio(dense, "mass_damping.alpha"), 0.5);
+  EXPECT_DOUBLE_EQ(ratio(large, "attached_mass.centre_x"), 10);
+  for (const BodyScale& body : {stiff, large, dense}) {
+    EXPECT_DOUBLE_EQ(ratio(body, "drag.coefficient"), 1) << "a property of the medium";
+    EXPECT_DOUBLE_EQ(ratio(body, "young_modulus"), 1);
+  }
+}
+
+TEST(BodyUnitText, NamesTheProductOfModulusDensityAndLength) {
+  EXPECT_EQ(BodyUnitText(kPressure), "E");
+  EXPECT_EQ(BodyUnitText(kForce), "E L^2");
+  EXPECT_EQ(BodyUnitText(kMass), "ρ L^3");
+  EXPECT_EQ(BodyUnitText(kRate), "E^0.5 ρ^-0.5 L^-1");
 }
 
 // A fit stays away from a bound at which the model degenerates, not from one well before it.

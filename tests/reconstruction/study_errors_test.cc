@@ -170,8 +170,8 @@ TEST(StudyErrors, ValuesFarFromTheUsualAreAWarning) {
         std::string("material: {law: linear, poisson_ratio: 0.3, young_modulus: ") + modulus + "}",
         "e.yaml"));
   };
-  EXPECT_TRUE(ImplausibleParameters(effects("0.1 MPa")).empty());
-  const auto warnings = ImplausibleParameters(effects("210 GPa"));
+  EXPECT_TRUE(ImplausibleParameters(effects("0.1 MPa"), kReferenceBody).empty());
+  const auto warnings = ImplausibleParameters(effects("210 GPa"), kReferenceBody);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_THAT(warnings[0], HasSubstr("young_modulus"));
 }

@@ -23,7 +23,7 @@ TEST(CsvTableTest, NumbersAreReadBackExactlyAndNanStaysNan) {
   const Eigen::Vector3d values(0.1, 1e-310, -std::numeric_limits<double>::max());
   const Eigen::Vector3d others(std::nan(""), 1.0 / 3, std::numeric_limits<double>::infinity());
   WriteCsv({{"time_s", values}, {"residual_m", others}}, folder / "a.csv");
-  const CsvTable table = LoadCsv(folder / "a.csv");
+  const CsvTable table = ReadCsv(folder / "a.csv");
   ASSERT_EQ(table.size(), 2u);
   EXPECT_EQ(table[0].name, "time_s");
   EXPECT_EQ(table[1].name, "residual_m");
@@ -41,7 +41,7 @@ TEST(CsvTableTest, TextHasTheFormThatSpreadsheetsExpect) {
 TEST(CsvTableTest, TableWithoutRowsKeepsItsHeader) {
   const TemporaryFolder folder;
   WriteCsv({{"a", Eigen::VectorXd(0)}}, folder / "a.csv");
-  const CsvTable table = LoadCsv(folder / "a.csv");
+  const CsvTable table = ReadCsv(folder / "a.csv");
   ASSERT_EQ(table.size(), 1u);
   EXPECT_EQ(table[0].values.size(), 0);
 }
@@ -59,14 +59,14 @@ TEST(CsvTableTest, ErrorsInDamagedFilesNameTheLine) {
   const auto file = folder / "a.csv";
   const auto expect = [&](const std::string& text, const std::string& cause) {
     std::ofstream(file) << text;
-    EXPECT_THAT([&] { LoadCsv(file); },
+    EXPECT_THAT([&] { ReadCsv(file); },
                 ThrowsMessage<InputError>(AllOf(HasSubstr(file.string()), HasSubstr(cause))));
   };
   expect("a,b\n1,2\n3\n", ":3: has 1 fields; the header names 2");
   expect("a,b\n1,2x\n", ":2: b: got '2x'; expected a number");
   expect("a,b\n1,\n", ":2: b: got ''");
   expect("", "is empty");
-  EXPECT_THAT([&] { LoadCsv(folder / "absent.csv"); },
+  EXPECT_THAT([&] { ReadCsv(folder / "absent.csv"); },
               ThrowsMessage<InputError>(HasSubstr("no such file")));
 }
 

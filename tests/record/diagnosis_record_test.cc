@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "support/temporary_folder.h"
@@ -95,6 +96,22 @@ TEST(DiagnosisRecord, IsReadBackAsItWasWritten) {
   // Every field is written and read: the second file equals the first.
   WriteDiagnosisFile(read, folder / "again.json");
   EXPECT_EQ(FileContent(folder / "again.json"), FileContent(folder / "diagnosis.json"));
+}
+
+// A value of 1 would say that what is left resembles noise, although nobody has looked.
+TEST(DiagnosisRecord, ClaimsNothingOfAStatisticOfAdequacyThatThereIsNot) {
+  nlohmann::json written = DecisionToJson(DecisionRecord());
+  nlohmann::json& adequacy = written.at("adequacy");
+  EXPECT_TRUE(adequacy.at("p_unknown_force").is_null());
+  EXPECT_TRUE(adequacy.at("p_variance").is_null());
+  adequacy.erase("p_unknown_force");
+  adequacy.erase("p_variance");
+  const DecisionRecord read = DecisionFromJson(written);
+  EXPECT_TRUE(std::isnan(read.adequacy.p_unknown_force));
+  EXPECT_TRUE(std::isnan(read.adequacy.p_variance));
+  // Every decision has one about further effects.
+  adequacy.erase("p_further");
+  EXPECT_THROW(DecisionFromJson(written), nlohmann::json::exception);
 }
 
 TEST(DiagnosisRecord, TellsWhichEffectExplainsMostOfWhatTheCatalogueDoesNotHave) {

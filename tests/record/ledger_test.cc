@@ -67,20 +67,45 @@ TEST(Ledger, AnEffectWhoseSizeMayBeZeroDoesNotCount) {
 TEST(Ledger, AnEffectCountsThatTheFittedPlacesHide) {
   Ledger ledger = SmallLedger();
   LedgerModel& model = ledger.models.back();
-  model.gain = -0.001;
+  model.gain = model.gain_with_reactions = -0.001;
   model.gain_at_measured_places = 0.4;
   EXPECT_TRUE(LowersError(model, 0));
   EXPECT_TRUE(LowersError(model, 0.3));
   EXPECT_FALSE(LowersError(model, 0.5));
   EXPECT_EQ(ledger.Best().name, "bar+drag");
-  model.gain = -0.1;  // no longer the same error
+  model.gain = model.gain_with_reactions = -0.1;  // no longer the same error
   EXPECT_FALSE(LowersError(model, 0));
   EXPECT_EQ(ledger.Best().name, "bar");
-  model.gain = -0.001;
+  model.gain = model.gain_with_reactions = -0.001;
   model.gain_at_measured_places = 0.01;
   EXPECT_FALSE(LowersError(model, 0));
   model.gain = 0.001;
   EXPECT_TRUE(LowersError(model, 0));
+}
+
+// Where grips prescribe the motion, only the force tells what is missing.
+TEST(Ledger, AnEffectCountsThatOnlyTheForceShows) {
+  const auto fit = [](double points, double force) {
+    CalibrationRecord record;
+    record.usable = true;
+    FittedRecording& recording = record.recordings.emplace_back();
+    recording.held_out.points = 100;
+    recording.held_out.rms = 1e-4 * points;
+    recording.held_out.rms_over_sigma = points;
+    FittedReaction& reaction = recording.reactions.emplace_back();
+    reaction.held_out.values = 60;
+    reaction.held_out.rms_over_sigma = force;
+    return record;
+  };
+  Ledger ledger;
+  ledger.models.push_back(MakeLedgerModel(ledger, "bar", fit(1, 22), -1, ""));
+  const LedgerModel child = MakeLedgerModel(ledger, "bar+drag", fit(1.05, 11), 0, "drag");
+  EXPECT_LT(child.gain, -0.02);
+  // 300 coordinates and 60 forces.
+  EXPECT_NEAR(child.gain_with_reactions,
+              1 - std::sqrt((300 * 1.05 * 1.05 + 60 * 121) / (300 + 60 * 484.)), 1e-12);
+  EXPECT_TRUE(LowersError(child, 0.4));
+  EXPECT_FALSE(LowersError(MakeLedgerModel(ledger, "bar+drag", fit(1.05, 22), 0, "drag"), 0));
 }
 
 TEST(Ledger, IsWrittenAsATree) {

@@ -35,7 +35,7 @@ TEST(ManifestTest, IsReadBackCompletely) {
   const TemporaryFolder folder;
   const Manifest written = Example();
   WriteManifest(written, folder / "manifest.json");
-  const Manifest read = LoadManifest(folder / "manifest.json");
+  const Manifest read = ReadManifest(folder / "manifest.json");
   EXPECT_EQ(read.schema_version, kManifestSchemaVersion);
   EXPECT_EQ(read.program_version, written.program_version);
   EXPECT_EQ(read.library_versions, written.library_versions);
@@ -68,14 +68,14 @@ TEST(ManifestTest, DamagedOrNewerFilesAreRefused) {
   const std::string whole = FileContent(file);
   const auto expect = [&](const std::string& text, const std::string& cause) {
     std::ofstream(file) << text;
-    EXPECT_THAT([&] { LoadManifest(file); },
+    EXPECT_THAT([&] { ReadManifest(file); },
                 ThrowsMessage<InputError>(AllOf(HasSubstr(file.string()), HasSubstr(cause))));
   };
   expect(whole.substr(0, whole.size() / 2), "is not a valid manifest");
   expect("{}", "schema_version");
   expect("[]", "is not a valid manifest");
   expect("{\"schema_version\": 99}", "from a later version of Lacuna");
-  EXPECT_THAT([&] { LoadManifest(folder / "absent.json"); },
+  EXPECT_THAT([&] { ReadManifest(folder / "absent.json"); },
               ThrowsMessage<InputError>(HasSubstr("no such file")));
 }
 

@@ -64,7 +64,10 @@ TEST(PlanFile, SaysWhatItDoesNotWeigh) {
   PlanRecord plan = PlanOfTwoRivals();
   plan.no_effect = 0.5;
   plan.also_left = {{"clock", "the clock of the frames", 0.4}};
+  plan.outcomes.emplace_back().untried = {{"mesh", "no other mesh could be made"}};
   const json written = Written(plan);
+  EXPECT_EQ(written.at("outcomes").at(0).at("untried"),
+            json::parse(R"([{"nuisance": "mesh", "why": "no other mesh could be made"}])"));
   EXPECT_EQ(written.at("no_effect"), 0.5);
   EXPECT_EQ(
       written.at("also_left"),
@@ -78,10 +81,14 @@ TEST(PlanFile, BelongsToItsDiagnosisAndToThisFormat) {
   WritePlanFile(PlanOfTwoRivals(), file);
   EXPECT_TRUE(IsPlanOf("ab12", file));
   EXPECT_FALSE(IsPlanOf("cd34", file));
-  EXPECT_FALSE(IsPlanOfAnotherFormat(file));
+  EXPECT_EQ(VersionOfPlan(file), RecordVersion::kThis);
   std::ofstream(file) << R"({"schema_version": 3, "diagnosis": "ab12"})";
   EXPECT_TRUE(IsPlanOf("ab12", file));
-  EXPECT_TRUE(IsPlanOfAnotherFormat(file));
+  EXPECT_EQ(VersionOfPlan(file), RecordVersion::kEarlier);
+  std::ofstream(file) << R"({"diagnosis": "ab12"})";
+  EXPECT_EQ(VersionOfPlan(file), RecordVersion::kEarlier);
+  std::ofstream(file) << R"({"schema_version": 99, "diagnosis": "ab12"})";
+  EXPECT_EQ(VersionOfPlan(file), RecordVersion::kLater);
 }
 
 TEST(PlannedRival, IsAPairIfItHasTwoEffects) {

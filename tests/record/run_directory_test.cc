@@ -84,7 +84,7 @@ TEST_F(RunDirectoryTest, StoredStageIsFoundAgainUnderItsKeyOnly) {
 
 TEST_F(RunDirectoryTest, ManifestContainsConfigurationInputsSeedAndVersions) {
   MakeFinishedRun();
-  const Manifest manifest = LoadManifest(folder_ / "manifest.json");
+  const Manifest manifest = ReadManifest(folder_ / "manifest.json");
   EXPECT_EQ(manifest.configuration["density"], 1070.0);
   EXPECT_EQ(manifest.inputs.at("scan.ply"), "00");
   EXPECT_EQ(manifest.seed, 7u);
@@ -146,7 +146,7 @@ TEST_F(RunDirectoryTest, InputsThatChangeMeanwhileStoreNothing) {
   EXPECT_THAT([&] { run.Finish(); }, names_it);
   EXPECT_FALSE(HasPartialFolder());
   EXPECT_FALSE(run.Has("fit", "new key"));
-  EXPECT_FALSE(LoadManifest(folder_ / "manifest.json").finished);
+  EXPECT_FALSE(ReadManifest(folder_ / "manifest.json").finished);
 }
 
 TEST_F(RunDirectoryTest, ExceptionWhileWritingKeepsTheEarlierResult) {
@@ -244,7 +244,7 @@ TEST_F(RunDirectoryTest, AfterAKillAtAnyMomentAStageIsCompleteOrAbsent) {
 
 TEST_F(RunDirectoryTest, ResultsOfAnotherVersionAreNotResumed) {
   MakeFinishedRun();
-  Manifest manifest = LoadManifest(folder_ / "manifest.json");
+  Manifest manifest = ReadManifest(folder_ / "manifest.json");
   manifest.library_versions["CGAL"] = "4.0";
   WriteManifest(manifest, folder_ / "manifest.json");
   RunDirectory run(folder_);

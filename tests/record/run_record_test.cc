@@ -54,7 +54,7 @@ TEST(RunRecordTest, IsReadBackCompletely) {
   RunRecord written = Example();
   written.frames_not_tried = 3;
   WriteRunRecord(written, folder.Path());
-  const RunRecord read = LoadRunRecord(folder.Path());
+  const RunRecord read = ReadRunRecord(folder.Path());
   EXPECT_EQ(read.recording, written.recording);
   EXPECT_EQ(read.object_size, written.object_size);
   EXPECT_EQ(read.animation_residual, written.animation_residual);
@@ -98,7 +98,7 @@ TEST(RunRecordTest, UnmeasuredValuesAreReadBackAsNotMeasured) {
   RunRecord empty;
   empty.frames.resize(1);
   WriteRunRecord(empty, folder.Path());
-  const RunRecord read = LoadRunRecord(folder.Path());
+  const RunRecord read = ReadRunRecord(folder.Path());
   EXPECT_TRUE(std::isnan(read.object_size));
   EXPECT_TRUE(std::isnan(read.frames[0].residual));
   EXPECT_TRUE(read.frames[0].force_resultant.array().isNaN().all());
@@ -123,7 +123,7 @@ TEST(RunRecordTest, IsUsableOnlyWhenEveryStageAndFrameIs) {
 TEST(RunRecordTest, FramesAreAlsoWrittenAsATable) {
   const TemporaryFolder folder;
   WriteRunRecord(Example(), folder.Path());
-  const CsvTable table = LoadCsv(folder / "frames.csv");
+  const CsvTable table = ReadCsv(folder / "frames.csv");
   const auto column = [&table](const std::string& name) {
     for (const CsvColumn& c : table) {
       if (c.name == name) return c.values;
@@ -140,13 +140,13 @@ TEST(RunRecordTest, FramesAreAlsoWrittenAsATable) {
 
 TEST(RunRecordTest, DamagedRecordsAreRefused) {
   const TemporaryFolder folder;
-  EXPECT_THAT([&] { LoadRunRecord(folder.Path()); },
+  EXPECT_THAT([&] { ReadRunRecord(folder.Path()); },
               ThrowsMessage<InputError>(HasSubstr("no such file")));
   std::ofstream(folder / "record.json") << "{\"schema_version\": 1}";
-  EXPECT_THAT([&] { LoadRunRecord(folder.Path()); },
+  EXPECT_THAT([&] { ReadRunRecord(folder.Path()); },
               ThrowsMessage<InputError>(HasSubstr("is not a valid record")));
   std::ofstream(folder / "record.json") << "{\"schema_version\": 2}";
-  EXPECT_THAT([&] { LoadRunRecord(folder.Path()); },
+  EXPECT_THAT([&] { ReadRunRecord(folder.Path()); },
               ThrowsMessage<InputError>(HasSubstr("has schema_version 2; expected 1")));
 }
 

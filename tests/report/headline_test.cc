@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/reported_models.h"
+
 namespace lacuna {
 namespace {
 
@@ -10,21 +12,8 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
-using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
-
-ReportedModel Model(double rms, double over_sigma) {
-  ReportedModel model;
-  model.name = "bar";
-  model.calibration.usable = true;
-  model.calibration.recordings.resize(1);
-  model.calibration.recordings[0].name = "swing";
-  model.errors.held_out_rms = rms;
-  model.errors.rms_over_sigma = over_sigma;
-  model.errors.has_held_out = true;
-  return model;
-}
 
 void Compare(ReportedModel* model) {
   ComparedPart part;
@@ -39,43 +28,17 @@ void Compare(ReportedModel* model) {
   model->comparison.emplace().recordings = {recording};
 }
 
-DiagnosisRecord Diagnosis(Verdict verdict, const std::vector<std::string>& names) {
-  DiagnosisRecord diagnosis;
-  diagnosis.verdict = verdict;
-  diagnosis.effects = names;
-  diagnosis.ranking.resize(2);
-  diagnosis.ranking[0].type = "viscoelastic_branch";
-  diagnosis.ranking[0].title = "Viscoelastic branch (Maxwell element of a Prony series)";
-  diagnosis.ranking[1].type = "drag";
-  diagnosis.ranking[1].title = "Drag of the surrounding medium";
-  diagnosis.ranking[1].separating_experiment = "Film it in a vacuum.";
-  diagnosis.nuisances.resize(1);
-  diagnosis.nuisances[0].name = "clock";
-  diagnosis.nuisances[0].what = "the clock of swing";
-  diagnosis.nuisances[0].advice = "give clock_deviation";
-  return diagnosis;
-}
-
-void Believe(DiagnosisRecord* diagnosis, const std::vector<std::string>& names, double probability,
-             HypothesisProbability::Kind kind = HypothesisProbability::Kind::kEffect) {
-  HypothesisProbability one;
-  one.kind = kind;
-  one.names = names;
-  one.probability = probability;
-  diagnosis->decision.probabilities.push_back(one);
-}
-
 TEST(Headline, TellsTheErrorWhatIsMissingAndWhatAddingItDid) {
-  ReportedModel before = Model(8.7e-4, 5.1);
+  ReportedModel before = ModelWithError(8.7e-4, 5.1);
   Compare(&before);
-  before.diagnosis = Diagnosis(Verdict::kMissing, {"viscoelastic_branch"});
-  Believe(&*before.diagnosis, {"viscoelastic_branch"}, 0.992);
+  before.diagnosis = DiagnosisNaming(Verdict::kMissing, {"viscoelastic_branch"});
+  AddProbability(&*before.diagnosis, {"viscoelastic_branch"}, 0.992);
   before.diagnosis->decision.probabilities[0].family = EffectFamily::kLossInside;
-  ReportedModel after = Model(1.9e-4, 1.2);
+  ReportedModel after = ModelWithError(1.9e-4, 1.2);
   after.added = "viscoelastic_branch";
-  after.diagnosis = Diagnosis(Verdict::kAdequate, {});
-  Believe(&*after.diagnosis, {}, 0.58, HypothesisProbability::Kind::kNothing);
-  Believe(&*after.diagnosis, {"clock"}, 0.2, HypothesisProbability::Kind::kNuisance);
+  after.diagnosis = DiagnosisNaming(Verdict::kAdequate, {});
+  AddProbability(&*after.diagnosis, {}, 0.58, HypothesisProbability::Kind::kNothing);
+  AddProbability(&*after.diagnosis, {"clock"}, 0.2, HypothesisProbability::Kind::kNuisance);
   EXPECT_THAT(
       Headline({before, after}),
       ElementsAre(
@@ -107,13 +70,13 @@ FittedParameter DragCoefficient(double low, double high) {
 
 // The diagnosis with drag names swelling, beside which the drag may be zero.
 TEST(Headline, SaysWhichAddedEffectMayBeLeftOut) {
-  ReportedModel first = Model(4e-4, 2.4);
-  first.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+  ReportedModel first = ModelWithError(4e-4, 2.4);
+  first.diagnosis = DiagnosisNaming(Verdict::kMissing, {"drag"});
   first.diagnosis->ranking = {Drag()};
-  ReportedModel second = Model(2e-4, 1.2);
+  ReportedModel second = ModelWithError(2e-4, 1.2);
   second.added = "drag";
-  second.diagnosis = Diagnosis(Verdict::kMissing, {"swelling"});
-  ReportedModel third = Model(1e-4, 0.6);
+  second.diagnosis = DiagnosisNaming(Verdict::kMissing, {"swelling"});
+  ReportedModel third = ModelWithError(1e-4, 0.6);
   third.added = "swelling";
   second.calibration.parameters = third.calibration.parameters = {DragCoefficient(2, 3)};
   const std::string told = "Beside what was added later, drag may be zero: it may be left out.";
@@ -133,18 +96,18 @@ TEST(Headline, SaysWhichAddedEffectMayBeLeftOut) {
 }
 
 TEST(Headline, SaysThatAnEffectWhoseSizeMayBeZeroDoesNotCount) {
-  ReportedModel before = Model(2e-4, 1.2);
-  before.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
-  Believe(&*before.diagnosis, {"drag"}, 0.98);
+  ReportedModel before = ModelWithError(2e-4, 1.2);
+  before.diagnosis = DiagnosisNaming(Verdict::kMissing, {"drag"});
+  AddProbability(&*before.diagnosis, {"drag"}, 0.98);
   before.diagnosis->ranking = {Drag()};
-  ReportedModel after = Model(1.9e-4, 1.15);
+  ReportedModel after = ModelWithError(1.9e-4, 1.15);
   after.added = "drag";
   after.calibration.parameters = {DragCoefficient(0, 3)};
   EXPECT_EQ(
       Headline({before, after}).back(),
       "The diagnosis names drag (98 %), but once it is fitted, its size may be zero, so that it "
       "does not count.");
-  const ReportedModel first = Model(4e-4, 2.4);
+  const ReportedModel first = ModelWithError(4e-4, 2.4);
   EXPECT_THAT(Headline({first, before, after}).back(), HasSubstr("A further diagnosis names drag"));
   // An effect that was added although the diagnosis has not named it alone.
   before.diagnosis->verdict = Verdict::kAmbiguous;
@@ -163,34 +126,8 @@ TEST(Headline, SaysThatAnEffectWhoseSizeMayBeZeroDoesNotCount) {
               HasSubstr("where they were measured, it falls from 0.500 mm to 0.300 mm"));
 }
 
-// What is said of an effect counts all hypotheses that contain it.
-TEST(Headline, AddsTheProbabilitiesOfAnEffectAloneAndBesideANuisance) {
-  using Kind = HypothesisProbability::Kind;
-  ReportedModel model = Model(8.7e-4, 5.1);
-  model.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
-  Believe(&*model.diagnosis, {"drag", "clock"}, 0.7);
-  Believe(&*model.diagnosis, {"drag"}, 0.2);
-  Believe(&*model.diagnosis, {"drag", "viscoelastic_branch"}, 0.07, Kind::kPair);
-  EXPECT_THAT(Headline({model}).back(), HasSubstr("(probability 97 %)"));
-  // Rivals exclude each other.
-  model.diagnosis->verdict = Verdict::kAmbiguous;
-  model.diagnosis->effects = {"drag", "viscoelastic_branch"};
-  Believe(&*model.diagnosis, {"viscoelastic_branch"}, 0.03);
-  EXPECT_THAT(Headline({model}).back(),
-              HasSubstr("drag of the surrounding medium (90 %), or viscoelastic branch (3 %)"));
-}
-
-TEST(Headline, StatesTheProbabilityAndTheFamilyBesideAnAdoptedNuisance) {
-  ReportedModel model = Model(8.7e-4, 5.1);
-  model.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
-  Believe(&*model.diagnosis, {"drag", "clock"}, 0.97);
-  model.diagnosis->decision.probabilities[0].family = EffectFamily::kLossOutside;
-  EXPECT_THAT(Headline({model}).back(),
-              HasSubstr("medium (loss outside the body; probability 97 %)."));
-}
-
 TEST(Headline, NamesTheRecordingOfTheLargestErrorWhereThereAreSeveral) {
-  ReportedModel model = Model(8.7e-4, 5.1);
+  ReportedModel model = ModelWithError(8.7e-4, 5.1);
   Compare(&model);
   model.comparison->recordings.push_back(model.comparison->recordings[0]);
   EXPECT_THAT(Headline({model}).at(0), HasSubstr("from 0.3 s to 0.4 s of recording swing."));
@@ -198,121 +135,23 @@ TEST(Headline, NamesTheRecordingOfTheLargestErrorWhereThereAreSeveral) {
   EXPECT_THAT(Headline({model}).at(0), HasSubstr("from 0.3 s to 0.4 s of recording 1."));
 }
 
-// An error of coarse elements is not called noise.
-TEST(Headline, SaysWhatTheErrorIsDueToWhereItIsNoNoise) {
-  ReportedModel model = Model(2e-4, 1.9);
-  model.diagnosis = Diagnosis(Verdict::kAdequate, {});
-  model.diagnosis->errors = model.errors;
-  model.diagnosis->errors.without_nuisances = 1.02;
-  RecordedNuisance mesh;
-  mesh.what = "the size of the elements";
-  mesh.advice = "choose a smaller mesh.max_volume";
-  mesh.explained = 0.6;
-  mesh.adopted = true;
-  RecordedNuisance shape;
-  shape.name = "shape";
-  shape.adopted = true;
-  model.diagnosis->nuisances = {shape, mesh};
-  EXPECT_EQ(Headline({model}).back(),
-            "No further effect is needed: corrected for the size of the elements, the error is 1.0 "
-            "times the noise: choose a smaller mesh.max_volume.");
-  model.diagnosis->errors.without_nuisances = 1.8;
-  EXPECT_THAT(Headline({model}).back(), HasSubstr("is that of the noise, or no larger"));
-}
-
-// "Nothing is missing" says nothing about an effect that the fitted parameters imitate.
-TEST(Headline, NamesEffectsThatWouldHaveStayedHidden) {
-  ReportedModel model = Model(2e-4, 1.1);
-  model.diagnosis = Diagnosis(Verdict::kAdequate, {});
-  const auto add = [&](const std::string& title, double detectable, double plausible) {
-    RecordedEffect& effect = model.diagnosis->ranking.emplace_back();
-    effect.type = effect.title = title;
-    effect.sizes = {{"size", "1"}};
-    effect.sizes[0].detectable = detectable;
-    effect.sizes[0].plausible = plausible;
-  };
-  add("seen", 0.9, 10);
-  add("not tried", INFINITY, NAN);
-  EXPECT_THAT(Headline({model}).at(1), Not(HasSubstr("Not every")));
-  add("imitated", INFINITY, 10);
-  add("weak", 1.1, 10);
-  EXPECT_THAT(
-      Headline({model}).at(1),
-      HasSubstr(" Not every further effect would have been noticed: imitated and weak could "
-                "have a tenth of the largest plausible size."));
-  std::vector<RecordedSize>& sizes = model.diagnosis->ranking.back().sizes;
-  sizes.push_back(sizes.front());
-  sizes.back().detectable = 0.9;
-  EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: imitated could"))
-      << "one direction shows";
-  model.calibration.parameters.emplace_back().name = "imitated.size";
-  EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: another imitated could"));
-  model.calibration.parameters.pop_back();
-  model.calibration.held = {{"imitated.size", "1", {0}}};
-  EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: another imitated could"));
-  model.calibration.held.clear();
-  for (const char* title : {"one", "two", "three", "four"}) add(title, 20, 10);
-  EXPECT_THAT(Headline({model}).at(1), HasSubstr("noticed: imitated, one, two and 2 others could"));
-}
-
-// What no fit may correct can look like a missing effect.
-TEST(Headline, DoubtsANameBesideAHeldModulus) {
-  ReportedModel model = Model(8.7e-4, 5.1);
-  model.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
-  const std::string doubt = "Young's modulus was not fitted: if 2e+06 Pa is wrong, an effect may";
-  EXPECT_THAT(Headline({model}).at(1), Not(HasSubstr("not fitted")));
-  model.calibration.held = {{"density", "kg/m^3", {1000}}, {"young_modulus", "Pa", {2e6}}};
-  EXPECT_THAT(Headline({model}).at(1), HasSubstr(doubt));
-  model.diagnosis = Diagnosis(Verdict::kAdequate, {});
-  EXPECT_THAT(Headline({model}).at(1), Not(HasSubstr("not fitted")));
-}
-
 TEST(Headline, SaysThatItWasNotDiagnosedAndNotCompared) {
   EXPECT_THAT(
-      Headline({Model(8.7e-4, 5.1)}),
+      Headline({ModelWithError(8.7e-4, 5.1)}),
       ElementsAre("The model misses the markers by 0.870 mm, 5.1 times the noise, in "
                   "frames that it was not fitted to.",
                   "What is missing has not been diagnosed yet; `lacuna diagnose` does so."));
-  ReportedModel fitted = Model(2e-4, 1.1);
+  ReportedModel fitted = ModelWithError(2e-4, 1.1);
   fitted.errors.has_held_out = false;
   fitted.calibration.recordings[0].scan.emplace();
   EXPECT_THAT(Headline({fitted}), ElementsAre("The model meets the scans to within 0.200 mm, 1.1 "
                                               "times the noise, in frames that it was fitted to."));
 }
 
-TEST(Headline, AnAmbiguousVerdictNamesTheSetAndTheExperiment) {
-  ReportedModel model = Model(8.7e-4, 5.1);
-  model.diagnosis = Diagnosis(Verdict::kAmbiguous, {"viscoelastic_branch", "drag"});
-  model.diagnosis->next_steps = {SeparateLookAlikes{"drag"}};
-  Believe(&*model.diagnosis, {"viscoelastic_branch"}, 0.6);
-  Believe(&*model.diagnosis, {"drag"}, 0.4);
-  EXPECT_EQ(Headline({model}).at(1),
-            "Something is missing, but these recordings cannot tell which of these: viscoelastic "
-            "branch (60 %), or drag of the surrounding medium (40 %). To decide: Film it in a "
-            "vacuum. `lacuna plan` computes which recording would.");
-  // Recordings of scans cannot be planned.
-  model.calibration.recordings[0].scan.emplace();
-  EXPECT_THAT(Headline({model}).at(1), EndsWith("To decide: Film it in a vacuum."));
-}
-
-TEST(Headline, EveryOtherVerdictHasItsSentence) {
-  ReportedModel model = Model(8.7e-4, 5.1);
-  model.diagnosis = Diagnosis(Verdict::kNuisance, {"clock"});
-  EXPECT_EQ(Headline({model}).at(1),
-            "No physical effect needs to be missing: an error of the measurement or of the "
-            "computation explains it (the clock of swing). What to do: give clock_deviation.");
-  model.diagnosis = Diagnosis(Verdict::kNoPower, {});
-  EXPECT_THAT(Headline({model}).at(1), HasSubstr("nothing can be said about what is missing"));
-  model.diagnosis = Diagnosis(Verdict::kNotInLibrary, {});
-  EXPECT_THAT(Headline({model}).at(1), HasSubstr("no effect of the catalogue explains"));
-  model.diagnosis = Diagnosis(Verdict::kAdequate, {});
-  EXPECT_THAT(Headline({model}).at(1), HasSubstr("No further effect is needed: "));
-}
-
 // A diagnosis of some recordings says nothing about what others would ask for.
 TEST(Headline, SaysWhichRecordingsAreNotMetAlthoughNothingMoreIsMissingInTheOthers) {
-  ReportedModel model = Model(8.7e-4, 5.1);
-  model.diagnosis = Diagnosis(Verdict::kAdequate, {});
+  ReportedModel model = ModelWithError(8.7e-4, 5.1);
+  model.diagnosis = DiagnosisNaming(Verdict::kAdequate, {});
   EXPECT_THAT(Headline({model}), SizeIs(2));
   model.calibration.recordings.resize(3);
   model.calibration.recordings[1].name = "repeat";
@@ -329,28 +168,12 @@ TEST(Headline, SaysWhichRecordingsAreNotMetAlthoughNothingMoreIsMissingInTheOthe
             "set `fitted: true` in a copy of the experiment.");
   model.calibration.recordings[1].held_out.points = 0;
   EXPECT_THAT(Headline({model}).at(2), HasSubstr("repeat (it could not be simulated), 52 g"));
-  model.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+  model.diagnosis = DiagnosisNaming(Verdict::kMissing, {"drag"});
   EXPECT_THAT(Headline({model}), SizeIs(2));
 }
 
-TEST(Headline, AnEffectThatExplainsAPartIsNotCalledWhatIsMissing) {
-  ReportedModel model = Model(8.7e-4, 5.1);
-  model.diagnosis = Diagnosis(Verdict::kNotInLibrary, {"drag"});
-  model.diagnosis->reasons = {ResidualRemains{"drag", 0.93, 1.7}};
-  Believe(&*model.diagnosis, {"drag"}, 0.99);
-  EXPECT_EQ(
-      Headline({model}).at(1),
-      "Of all effects of the catalogue, drag of the surrounding medium explains most: 93 % of "
-      "the squared error beyond the noise. 1.7 times the noise is left, which no effect "
-      "explains: something else is missing, beside it or in its place.");
-  // A nuisance may have been taken beside it.
-  model.diagnosis->decision.adequacy.beside = {"drag", "clock"};
-  EXPECT_THAT(Headline({model}).at(1),
-              HasSubstr("With the clock of swing beside it, 1.7 times the noise is left"));
-}
-
 TEST(Headline, SaysThatAMeasuredForceIsMissedByFarMoreThanTheMarkers) {
-  ReportedModel model = Model(3.1e-5, 0.9);
+  ReportedModel model = ModelWithError(3.1e-5, 0.9);
   FittedReaction force;
   force.name = "jaw";
   force.largest_reading = 2;
@@ -371,6 +194,13 @@ TEST(Headline, SaysThatAMeasuredForceIsMissedByFarMoreThanTheMarkers) {
       "like this.");
   reaction.tare_deviation = 0.1;
   EXPECT_THAT(Headline({model}).at(1), testing::Not(HasSubstr("tare")));
+  // An effect that has been named explains the reading, unless a mistake fits.
+  ReportedModel diagnosed = model;
+  diagnosed.diagnosis = DiagnosisNaming(Verdict::kMissing, {"viscoelastic_branch"});
+  EXPECT_EQ(Headline({diagnosed}).at(1),
+            "But it misses the force on jaw by 0.9 N, 505.0 times its noise.");
+  diagnosed.calibration.recordings[0].reactions[0].likely_mistakes.factor = -1;
+  EXPECT_THAT(Headline({diagnosed}).at(1), HasSubstr("opposite sign"));
   reaction.likely_mistakes.factor = -3e4;
   EXPECT_THAT(Headline({model}).at(1),
               EndsWith("checked: its reading would fit with the opposite sign (`exerted_by`)."));
@@ -389,7 +219,7 @@ TEST(Headline, SaysThatAMeasuredForceIsMissedByFarMoreThanTheMarkers) {
 }
 
 TEST(Headline, NamesAConflictOfMoreThanTenStandardDeviations) {
-  ReportedModel model = Model(3.1e-5, 0.9);
+  ReportedModel model = ModelWithError(3.1e-5, 0.9);
   model.calibration.prior_conflicts = {
       MarkerConflict{"swing", "root", Eigen::Vector3d(9.9e-4, 0, 0), 1e-4},
       NuisanceParameterConflict{"swing.clock", 4}};
@@ -403,7 +233,7 @@ TEST(Headline, NamesAConflictOfMoreThanTenStandardDeviations) {
 }
 
 TEST(Headline, NamesTheParameterThatADefaultPriorHoldsBackMost) {
-  ReportedModel model = Model(3.1e-5, 0.9);
+  ReportedModel model = ModelWithError(3.1e-5, 0.9);
   model.calibration.prior_conflicts = {
       ModelParameterConflict{"young_modulus", "Pa", 9, 1e5, /*is_default=*/false}};
   EXPECT_THAT(Headline({model}), SizeIs(1));
@@ -417,12 +247,12 @@ TEST(Headline, NamesTheParameterThatADefaultPriorHoldsBackMost) {
 }
 
 TEST(Headline, AFitThatFailedIsNotCalledAModel) {
-  ReportedModel failed = Model(0, 0);
+  ReportedModel failed = ModelWithError(0, 0);
   failed.calibration.usable = false;
   failed.calibration.message = "an element inverted";
   EXPECT_THAT(Headline({failed}), ElementsAre("The fit did not succeed: an element inverted."));
-  ReportedModel before = Model(8.7e-4, 5.1);
-  before.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+  ReportedModel before = ModelWithError(8.7e-4, 5.1);
+  before.diagnosis = DiagnosisNaming(Verdict::kMissing, {"drag"});
   failed.added = "drag";
   const std::vector<std::string> sentences = Headline({before, failed});
   ASSERT_THAT(sentences, SizeIs(3));

@@ -52,16 +52,21 @@ TEST(ReportDocument, APlanOfAnotherFormatIsLeftOutWithANote) {
   WriteFit(run, {});
   WriteSmallDiagnosis(run, *SmallLedger().models[0].diagnosis);
   std::filesystem::create_directories(run / "plan");
-  const json plan = {{"schema_version", 3},
-                     {"diagnosis", HashFile(run / "diagnosis/diagnosis.json")},
-                     {"rivals", json::array()},
-                     {"outcomes", json::array()}};
-  std::ofstream(run / "plan/plan.json") << plan;
-  const json document = ShownRun(run);
-  EXPECT_TRUE(document.at("models").at(0).at("plan").is_null());
-  const std::vector<std::string> notes = document.at("notes");
-  EXPECT_THAT(notes, ElementsAre(HasSubstr("The plan in the folder of bar is of an earlier version "
-                                           "of Lacuna and is not shown; `lacuna plan` makes")));
+  json plan = {{"schema_version", 3},
+               {"diagnosis", HashFile(run / "diagnosis/diagnosis.json")},
+               {"rivals", json::array()},
+               {"outcomes", json::array()}};
+  const auto expect_note = [&](const std::string& origin) {
+    std::ofstream(run / "plan/plan.json") << plan;
+    const json document = ShownRun(run);
+    EXPECT_TRUE(document.at("models").at(0).at("plan").is_null());
+    const std::vector<std::string> notes = document.at("notes");
+    EXPECT_THAT(notes, ElementsAre(HasSubstr("The plan in the folder of bar is of " + origin +
+                                             " and is not shown; `lacuna plan` makes")));
+  };
+  expect_note("an earlier version of Lacuna");
+  plan["schema_version"] = 99;
+  expect_note("a later version of Lacuna");
 }
 
 TEST(ReportDocument, WhatIsOfAnEarlierFitIsLeftOutWithANote) {
@@ -105,7 +110,7 @@ TEST(ReportDocument, AnAddedModelOfAnotherVersionIsLeftOut) {
   calibration["schema_version"] = 1;
   std::ofstream(file) << calibration;
   const std::filesystem::path manifest_file = folder / "bar+drag/manifest.json";
-  Manifest manifest = LoadManifest(manifest_file);
+  Manifest manifest = ReadManifest(manifest_file);
   for (StoredFile& stored : manifest.stages.at("calibration").files) {
     if (stored.name != "calibration.json") continue;
     stored.size = std::filesystem::file_size(file);

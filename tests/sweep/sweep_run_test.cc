@@ -84,7 +84,7 @@ TEST_F(SweepRunTest, AFailureHasItsReasonAndDoneCasesAreKept) {
   EXPECT_THAT(UnfinishedCases(sweep_, {}), ElementsAre(2));
   EXPECT_EQ(RunSweep(sweep_, {.workers = 2}), 1);
   EXPECT_EQ(FileContent(Case(0) / "outcome.json"), before);
-  const auto failed = LoadOutcome(Case(1));
+  const auto failed = ReadOutcome(Case(1));
   ASSERT_TRUE(failed.has_value());
   EXPECT_FALSE(failed->done);
   EXPECT_THAT(failed->message, HasSubstr("b.xyz"));
@@ -97,15 +97,15 @@ TEST_F(SweepRunTest, AFailureHasItsReasonAndDoneCasesAreKept) {
               ThrowsMessage<InputError>(HasSubstr("has no case 99")));
   std::filesystem::rename(folder_ / "recording/a.xyz", folder_ / "recording/b.xyz");
   EXPECT_EQ(RunSweep(sweep_, {.retry_failed = true}), 1);
-  EXPECT_THAT(LoadOutcome(Case(1))->message, HasSubstr("a.xyz"));
+  EXPECT_THAT(ReadOutcome(Case(1))->message, HasSubstr("a.xyz"));
 }
 
 TEST_F(SweepRunTest, SkipsACaseThatAnotherProcessHasClaimed) {
   PlanWithoutSecondFrame();
   Holder holder(Case(0) / "claimed");
   EXPECT_EQ(RunSweep(sweep_, {}), 2);
-  EXPECT_FALSE(LoadOutcome(Case(0)).has_value());
-  EXPECT_TRUE(LoadOutcome(Case(1)).has_value());
+  EXPECT_FALSE(ReadOutcome(Case(0)).has_value());
+  EXPECT_TRUE(ReadOutcome(Case(1)).has_value());
   const SweepTable table = CollectSweep(sweep_);
   EXPECT_EQ(table.rows[0].status, CaseStatus::kRunning);
   EXPECT_THAT(table.rows[0].note, HasSubstr("process " + std::to_string(holder.Id())));
@@ -113,14 +113,14 @@ TEST_F(SweepRunTest, SkipsACaseThatAnotherProcessHasClaimed) {
   // Its claim was released when it ended.
   EXPECT_EQ(CollectSweep(sweep_).rows[0].status, CaseStatus::kPlanned);
   EXPECT_EQ(RunSweep(sweep_, {}), 2);
-  EXPECT_TRUE(LoadOutcome(Case(0)).has_value());
+  EXPECT_TRUE(ReadOutcome(Case(0)).has_value());
 }
 
 TEST_F(SweepRunTest, RunsOnlyTheRequestedCases) {
   PlanWithoutSecondFrame();
   EXPECT_EQ(RunSweep(sweep_, {.numbers = {2}}), 1);
-  EXPECT_FALSE(LoadOutcome(Case(0)).has_value());
-  EXPECT_TRUE(LoadOutcome(Case(1)).has_value());
+  EXPECT_FALSE(ReadOutcome(Case(0)).has_value());
+  EXPECT_TRUE(ReadOutcome(Case(1)).has_value());
   EXPECT_THROW(RunSweep(sweep_, {.numbers = {3}}), InputError);
   EXPECT_THROW(RunSweep(folder_.Path(), {}), InputError);
 }
@@ -133,7 +133,7 @@ TEST_F(SweepRunTest, ACaseThatDoesNotFitIntoMemoryStaysPlanned) {
   SetMemoryLimit(1);  // byte
   EXPECT_EQ(RunSweep(sweep_, {}), 1);
   SetMemoryLimit(0);
-  EXPECT_FALSE(LoadOutcome(Case(0)).has_value());
+  EXPECT_FALSE(ReadOutcome(Case(0)).has_value());
   EXPECT_THAT(UnfinishedCases(sweep_, {}), ElementsAre(1));
   EXPECT_THAT(FileContent(Case(0) / "log.txt"), HasSubstr("does not fit into memory: "));
 }
@@ -175,13 +175,13 @@ TEST_F(SweepRunTest, ErrorNamesADamagedOutcome) {
 TEST_F(SweepRunTest, AnOutcomeWithAnotherNumberIsRefused) {
   plan_ = PlanSmallSweep(folder_.Path(), kTwo);
   WriteOutcome(MadeUp(0.25), Case(0));
-  EXPECT_TRUE(LoadOutcome(Case(0))->done);
+  EXPECT_TRUE(ReadOutcome(Case(0))->done);
   std::string text = FileContent(Case(0) / "outcome.json");
   const size_t at = text.find("0.25");
   ASSERT_NE(at, std::string::npos);
   std::ofstream(Case(0) / "outcome.json") << text.replace(at, 4, "0.27");
   EXPECT_THAT(
-      [this] { LoadOutcome(Case(0)); },
+      [this] { ReadOutcome(Case(0)); },
       ::testing::ThrowsMessage<InputError>(AllOf(HasSubstr("outcome.json"), HasSubstr("damaged"))));
 }
 

@@ -91,10 +91,10 @@ TEST(TrialGroup, AnUnknownNameIsRefusedWithTheFile) {
   const size_t at = text.find("\"hard_control\"");
   ASSERT_NE(at, std::string::npos);
   std::ofstream(folder / kTruthFile) << text;
-  EXPECT_EQ(LoadCase(folder.Path()).group, TrialGroup::kHardControl);
+  EXPECT_EQ(ReadCase(folder.Path()).group, TrialGroup::kHardControl);
   std::ofstream(folder / kTruthFile) << text.replace(at, 14, "\"hard\"");
   EXPECT_THAT(
-      [&] { LoadCase(folder.Path()); },
+      [&] { ReadCase(folder.Path()); },
       ThrowsMessage<InputError>(AllOf(HasSubstr("truth.json"), HasSubstr("\"hard\" is not"))));
 }
 
@@ -103,10 +103,10 @@ TEST(ReportedSuite, CanStillBeRead) {
   int cases = 0;
   for (const fs::path& own :
        CasesIn(fs::path(LACUNA_SOURCE_DIR) / "results" / "fresh_301130_cases")) {
-    const TrialCase trial = LoadCase(own);
+    const TrialCase trial = ReadCase(own);
     EXPECT_EQ(trial.name, own.filename());
     EXPECT_EQ(trial.name.find("-" + TrialGroupName(trial.group) + "-"), 4u) << own;
-    EXPECT_FALSE(VerdictName(LoadTrialOutcome(own).verdict).empty()) << own;
+    EXPECT_FALSE(VerdictName(ReadTrialOutcome(own).verdict).empty()) << own;
     ++cases;
   }
   EXPECT_GT(cases, 100);

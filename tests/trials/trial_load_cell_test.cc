@@ -62,7 +62,7 @@ TEST(TrialLoadCells, AreKeptWithTheCase) {
   ASSERT_TRUE(trial.load_cell.has_value());
   EXPECT_FALSE(DrawLoadCell(trial.seed, 0).has_value());
   WriteCase(trial, folder.Path());
-  EXPECT_EQ(TextOfCase(LoadCase(folder.Path())), TextOfCase(trial));
+  EXPECT_EQ(TextOfCase(ReadCase(folder.Path())), TextOfCase(trial));
 }
 
 TEST(TrialLoadCells, HaveErrorsThatAreDrawnFromTheirPriors) {
@@ -151,7 +151,7 @@ TEST(TrialLoadCells, AreCountedInTheDetectableSizeOfAHiddenEffect) {
   ASSERT_EQ(cases.size(), 1u);
   ASSERT_TRUE(MakeCase(cases[0], folder.Path()));
   const std::filesystem::path own = folder / cases[0].name;
-  const TrialCase sealed = LoadCase(own);
+  const TrialCase sealed = ReadCase(own);
   ASSERT_TRUE(sealed.load_cell.has_value());
   const double size = sealed.hidden.at(0).parameters.at("coefficient");
   EXPECT_GT(size, 0.1);  // kg/m³; air has about 1
@@ -161,7 +161,7 @@ TEST(TrialLoadCells, AreCountedInTheDetectableSizeOfAHiddenEffect) {
   blind.name = "blind";
   blind.load_cell.reset();
   ASSERT_TRUE(MakeCase(blind, folder.Path()));
-  const TrialCase without = LoadCase(folder / blind.name);
+  const TrialCase without = ReadCase(folder / blind.name);
   ASSERT_EQ(without.seed, sealed.seed) << "one of the two cases was drawn again";
   EXPECT_GT(without.hidden.at(0).parameters.at("coefficient"), size);
 }

@@ -62,11 +62,11 @@ TEST(RedecideOutcome, ReplacesAFalsifiedVerdict) {
       {.kind = HypothesisProbability::Kind::kEffect, .names = {"pressure"}, .probability = 1}};
   WriteTrialOutcome(falsified, folder.Path());
   EXPECT_FALSE(RedecideOutcome(CaseWithDrag(), folder.Path())) << "no decision was kept";
-  EXPECT_EQ(LoadTrialOutcome(folder.Path()).named, falsified.named);
+  EXPECT_EQ(ReadTrialOutcome(folder.Path()).named, falsified.named);
 
   WriteDecisionInput(input, folder / kDecisionFolder);
   ASSERT_TRUE(RedecideOutcome(CaseWithDrag(), folder.Path()));
-  const TrialOutcome outcome = LoadTrialOutcome(folder.Path());
+  const TrialOutcome outcome = ReadTrialOutcome(folder.Path());
   EXPECT_EQ(outcome.verdict, decision.verdict);
   EXPECT_EQ(outcome.named, decision.names);
   ASSERT_EQ(outcome.probabilities.size(), decision.record.probabilities.size());
@@ -97,10 +97,10 @@ TEST(RunFollowUps, FollowsOpenCasesAndKeepsWhyOneFailed) {
   keep("open", TrialGroup::kOneEffect, Verdict::kAdequate);
   keep("removed", TrialGroup::kRemoved, Verdict::kAdequate);
   EXPECT_TRUE(RunFollowUps(folder.Path(), 2));
-  EXPECT_FALSE(LoadFollowUps(folder / "open").has_value());
+  EXPECT_FALSE(ReadFollowUps(folder / "open").has_value());
   EXPECT_THAT(FileContent(folder / "open/follow_up" / kFailureFile), HasSubstr(kExperimentFile));
-  EXPECT_FALSE(LoadFollowUps(folder / "closed").has_value());
-  EXPECT_FALSE(LoadFollowUps(folder / "removed").has_value());
+  EXPECT_FALSE(ReadFollowUps(folder / "closed").has_value());
+  EXPECT_FALSE(ReadFollowUps(folder / "removed").has_value());
   const FollowUpReport report = ReportFollowUps(folder.Path());
   EXPECT_EQ(report.open, 1);
   EXPECT_EQ(report.waiting, 1);

@@ -127,7 +127,7 @@ TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
   ASSERT_EQ(cases.size(), 1u);
   ASSERT_TRUE(MakeCase(cases[0], folder.Path()));
   const std::filesystem::path own = folder / cases[0].name;
-  const TrialCase sealed = LoadCase(own);
+  const TrialCase sealed = ReadCase(own);
   EXPECT_EQ(sealed.hidden[0].type, "drag");
   EXPECT_GT(sealed.hidden[0].parameters.at("coefficient"), 1);  // kg/m³, above the drag of air
   // The truth that is kept of a reported case reproduces its recordings.
@@ -138,7 +138,7 @@ TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
   EXPECT_EQ(FileContent(own / "recording_1/markers.csv"), recorded);
 
   EXPECT_TRUE(RunTrials(folder.Path(), 1));
-  const TrialOutcome outcome = LoadTrialOutcome(own);
+  const TrialOutcome outcome = ReadTrialOutcome(own);
   ASSERT_TRUE(outcome.simulated);
   EXPECT_GT(outcome.simulated->named + outcome.simulated->open, 0.8);
   ASSERT_FALSE(outcome.ranked.empty());
@@ -352,7 +352,7 @@ TEST(FollowUps, AreCountedBesideWhatThePlanPredicted) {
   EXPECT_EQ(report.tallies[1].named, 0);
   EXPECT_EQ(report.tallies[1].wrong, 1);
   EXPECT_EQ(report.tallies[1].predicted_cases, 0);
-  EXPECT_EQ(LoadFollowUps(folder / cases[1].name)->message, "no other");
+  EXPECT_EQ(ReadFollowUps(folder / cases[1].name)->message, "no other");
   EXPECT_THAT(ReportInWords(ReportTrials(folder.Path())), HasSubstr("predicted 90 %"));
   WriteFileAtomically(folder / cases[1].name / "follow_up/follow_up.json", "{}");
   EXPECT_THROW(ReportFollowUps(folder.Path()), InputError);

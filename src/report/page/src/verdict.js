@@ -46,7 +46,7 @@ function adequacyText(decision) {
   const size = `${timesNoise(adequacy.rms_over_sigma)} over all frames, ${probabilityText(adequacy.p)}`;
   if (adequacy.is_adequate) return `${subject} is no more than noise and the error of the model would leave (${size}).`;
   if (!adequacy.is_tolerated) return `Something unknown remains: ${subject[0].toLowerCase()}${subject.slice(1)} is more than noise alone would leave (${size}).`;
-  const left = isNumber(adequacy.left_share) ? ` The excess is ${(100 * adequacy.left_share).toFixed(1)} % of what was explained, which is tolerated.` : '';
+  const left = isNumber(adequacy.left_share) ? ` The excess is ${Number((100 * adequacy.left_share).toPrecision(2))} % of what was explained, which is tolerated.` : '';
   return `${subject} is slightly more than noise alone would leave (${size}).${left}`;
 }
 
