@@ -113,6 +113,23 @@ CalibrationRecord DescribeFit(const AdaptedFit& fit, const PredictionStudy& stud
   return record;
 }
 
+// Says that an estimate of the noise contains motion, where the model errs by much less. Empty
+// where it does not.
+std::string NoteOnNoise(const CalibrationProblem& problem,
+                        const std::vector<RecordingMisfit>& misfits) {
+  constexpr double kFarLess = 0.5;                   // of σ: noise alone leaves about 1
+  if (problem.LeastNoiseVariance() == 1) return "";  // it is not estimated
+  double largest = 0;
+  for (const RecordingMisfit& misfit : misfits)
+    largest = std::max({largest, misfit.in_fit.rms_over_sigma, misfit.held_out.rms_over_sigma});
+  if (largest >= kFarLess) return "";
+  return fmt::format(
+      "the noise, σ = {:.3g} mm per coordinate, was estimated from frames that do not show the "
+      "object at rest, and is too large: the model errs by no more than {:.2g} σ. Give `noise`; "
+      "until then, all errors in σ, intervals and verdicts are too favourable to the model",
+      1e3 * problem.noise(), largest);
+}
+
 FittedRecording DescribeRecording(const RecordingModel& model, const RecordingMisfit& misfit,
                                   double scan_noise) {
   const PredictedRecording& item = model.recording();
@@ -174,6 +191,8 @@ CalibrationStage FitAndDescribe(PredictionStudy study, const ReferenceBody& refe
   record.prior_conflicts = FindPriorConflicts(problem, values, misfits);
   const std::vector<std::string> stops = NotesOnStops(problem, misfits);
   record.notes.insert(record.notes.end(), stops.begin(), stops.end());
+  if (std::string note = NoteOnNoise(problem, misfits); !note.empty())
+    record.notes.push_back(std::move(note));
   stage.misfit = MisfitTable(problem, misfits);
   stage.reactions = ReactionTable(problem, misfits, /*torques=*/false);
   stage.torques = ReactionTable(problem, misfits, /*torques=*/true);

@@ -73,6 +73,21 @@ std::string AmbiguousSentence(const ReportedModel& model) {
                                                : "");
 }
 
+// The nuisance of every model that explains more than all nuisances that the verdict names: with
+// coarse elements, for instance, what is left of their error may look like a grip that reaches
+// further. Null: there is none.
+const RecordedNuisance* ExplainsMoreThanNamed(const DiagnosisRecord& diagnosis) {
+  const RecordedNuisance* most = nullptr;
+  double named = 0;
+  for (const RecordedNuisance& nuisance : diagnosis.nuisances) {
+    if (std::count(diagnosis.effects.begin(), diagnosis.effects.end(), nuisance.name) > 0)
+      named = std::max(named, nuisance.explained);
+    else if (nuisance.adopted && (most == nullptr || nuisance.explained > most->explained))
+      most = &nuisance;
+  }
+  return most != nullptr && most->explained > named ? most : nullptr;
+}
+
 std::string NuisanceSentence(const ReportedModel& model) {
   const DiagnosisRecord& diagnosis = *model.diagnosis;
   std::vector<std::string> whats;
@@ -82,6 +97,11 @@ std::string NuisanceSentence(const ReportedModel& model) {
     if (!diagnosis.effects.empty() && nuisance.name == diagnosis.effects.front() &&
         !nuisance.advice.empty() && advice.empty())
       advice = " What to do: " + nuisance.advice + ".";
+  if (const RecordedNuisance* more = ExplainsMoreThanNamed(diagnosis))
+    advice += fmt::format(
+        " But first: {}. In the model as it is, {} explains more of the error, {:.0f} %, of which "
+        "it may have left a part.",
+        more->advice, TitleOf(diagnosis, more->name), 100 * more->explained);
   return fmt::format(
       "No {} effect needs to be missing: an error of the measurement or of the computation "
       "explains {}{}.{}",

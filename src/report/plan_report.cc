@@ -30,6 +30,9 @@ std::string RivalsText(const PlanRecord& plan) {
   return EnumerationText(rivals);
 }
 
+// A statement that is at least this probable is more likely true than not.
+constexpr double kLikely = 0.5;
+
 // What is open, from the most general verdict to the choice among rivals.
 std::string WhatIsOpen(const PlanRecord& plan) {
   const bool is_one = plan.rivals.size() == 1;
@@ -37,6 +40,11 @@ std::string WhatIsOpen(const PlanRecord& plan) {
     return fmt::format("which recording would best show {}, if {} there", RivalsText(plan),
                        is_one ? "it were" : "one of them were");
   };
+  if (IsAdequate(plan) && plan.no_effect < kLikely)
+    return fmt::format(
+        "No missing effect can be named with certainty, but one is more probable than none "
+        "(probability that none is missing: {}). The plan tells {}.",
+        PercentText(plan.no_effect), would_show());
   if (IsAdequate(plan))
     return fmt::format(
         "Nothing is open: the recordings show no missing effect (probability that none is missing: "

@@ -188,6 +188,16 @@ TEST(PlanSummary, SaysThatNothingIsOpenAfterAdequate) {
   EXPECT_THAT(text, ::testing::Not(HasSubstr("the clock")));
 }
 
+TEST(PlanSummary, DoesNotCallAQuestionClosedWhoseLikelierAnswerIsAnEffect) {
+  PlanRecord plan = PlanAfter("adequate");
+  plan.no_effect = 0.35;
+  EXPECT_THAT(
+      OneLine(PlanSummary(plan)),
+      ::testing::StartsWith("No missing effect can be named with certainty, but one is more "
+                            "probable than none (probability that none is missing: 35 %). "
+                            "The plan tells which recording would best show"));
+}
+
 TEST(PlanSummary, GivesTheProbabilitiesOfTheDiagnosis) {
   EXPECT_THAT(OneLine(PlanSummary(PlanAfter("ambiguous {one, two}"))),
               ::testing::StartsWith("The diagnosis cannot tell apart the first loss (3 %) and the "

@@ -154,6 +154,27 @@ TEST(HeadlineVerdict, EveryOtherVerdictHasItsSentence) {
   EXPECT_THAT(VerdictSentence(model), HasSubstr("No further effect is needed: "));
 }
 
+// What is left of the error of coarse elements may look like a grip that reaches further.
+TEST(HeadlineVerdict, ANuisanceOfEveryModelThatExplainsMoreComesFirst) {
+  ReportedModel model = ModelWithError(8.7e-4, 5.1);
+  model.diagnosis = DiagnosisNaming(Verdict::kNuisance, {"grip_extent"});
+  std::vector<RecordedNuisance>& nuisances = model.diagnosis->nuisances;
+  nuisances = {{"grip_extent", "how far the grips reach", "measure it"},
+               {"mesh", "the size of the elements", "choose a smaller mesh.max_volume"},
+               {"clock", "the clock", "synchronise it"}};
+  nuisances[0].explained = 0.29;
+  nuisances[1].explained = 0.75;
+  nuisances[1].adopted = true;
+  nuisances[2].explained = 0.9;  // neither named nor in the model
+  EXPECT_THAT(
+      VerdictSentence(model),
+      EndsWith("What to do: measure it. But first: choose a smaller mesh.max_volume. In the "
+               "model as it is, the size of the elements explains more of the error, 75 %, "
+               "of which it may have left a part."));
+  nuisances[1].explained = 0.2;
+  EXPECT_THAT(VerdictSentence(model), EndsWith("What to do: measure it."));
+}
+
 TEST(HeadlineVerdict, AnEffectThatExplainsAPartIsNotCalledWhatIsMissing) {
   ReportedModel model = ModelWithError(8.7e-4, 5.1);
   model.diagnosis = DiagnosisNaming(Verdict::kNotInLibrary, {"drag"});

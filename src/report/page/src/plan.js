@@ -49,6 +49,8 @@ function picture(best) {
 function question(plan) {
   const list = (entries, probability) => entries.map((entry) => `${entry.title} (${posterior(probability(entry))})`).join(', ');
   const rivals = list(plan.rivals ?? [], (rival) => rival.of_diagnosis);
+  if (plan.verdict === 'adequate' && plan.no_effect < 0.5)
+    return `No missing effect can be named with certainty, but one is more probable than none (probability that none is missing: ${posterior(plan.no_effect)}). The most probable: ${rivals}.`;
   if (plan.verdict === 'adequate')
     return `Nothing is open: the recordings show no missing effect (probability ${posterior(plan.no_effect)}). If one were there, these would be the most probable: ${rivals}.`;
   if (plan.verdict === 'no power') return `These recordings could not show any effect. The plan tells which recording would best show ${rivals}.`;
