@@ -7,7 +7,8 @@
 // free energy of the branch is ½ Q : C⁻¹ : Q, its dissipation Q : C⁻¹ : Q/τ ≥ 0, at any strain.
 //
 // C is that of a full isotropic solid, not only of its deviator: with the Poisson ratio of the
-// material (the default) the branch is a scaled copy of it, so that m is the extra Young's modulus
+// material (the default) the branch is a scaled copy of it at small strain, so that m is the extra
+// Young's modulus
 // that a sudden stretch meets, a held body relaxes without changing shape, and nearly
 // incompressible bodies stay so.
 //
