@@ -104,11 +104,7 @@ std::string Facts(const CatalogueEntry& entry, size_t k, size_t count) {
              InUnit(fmt::format("{:g} to {:g}", parameter.plausible_min, parameter.plausible_max),
                     parameter.dimension);
     if (parameter.of_body)
-      facts += fmt::format(
-          " in a body with E = {:g} Pa, ρ = {:g} kg/m³ and the length L = {:g} m, in proportion to "
-          "{} in others",
-          kReferenceBody.young_modulus, kReferenceBody.density, kReferenceBody.length,
-          BodyUnitText(parameter.dimension));
+      facts += fmt::format(", in proportion to {}", BodyUnitText(parameter.dimension));
   }
   facts += "; " + DefaultText(entry, k, count);
   if (parameter.setting) return facts + "; a setting, which is given and never fitted";
@@ -122,6 +118,14 @@ std::string Facts(const CatalogueEntry& entry, size_t k, size_t count) {
 void PrintParameters(const CatalogueEntry& entry) {
   const std::vector<ParameterCard>& parameters = entry.card->parameters;
   fmt::print("\nParameters\n");
+  if (std::any_of(parameters.begin(), parameters.end(),
+                  [](const ParameterCard& parameter) { return parameter.of_body; }))
+    PrintWrapped(
+        fmt::format(
+            "Usual ranges that are in proportion to E, ρ or L are those in a body with Young's "
+            "modulus E = {:g} Pa, density ρ = {:g} kg/m³ and length L = {:g} m.",
+            kReferenceBody.young_modulus, kReferenceBody.density, kReferenceBody.length),
+        2);
   if (parameters.empty()) PrintWrapped("User-defined, as docs/expression.md describes.", 2);
   for (size_t k = 0; k < parameters.size();) {
     const std::string vector = VectorNameAt(*entry.card, k);

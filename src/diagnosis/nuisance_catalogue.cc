@@ -14,6 +14,7 @@ NuisanceEntry TimeStepNuisance();
 NuisanceEntry ShapeNuisance();
 NuisanceEntry GripJitterNuisance();
 NuisanceEntry GripExtentNuisance();
+NuisanceEntry LoadScaleNuisance();
 NuisanceEntry GripPlacementNuisance();
 NuisanceEntry GripComplianceNuisance();
 NuisanceEntry ClockNuisance();
@@ -23,12 +24,13 @@ NuisanceEntry RegistrationDriftNuisance();
 
 const std::vector<NuisanceEntry>& NuisanceCatalogue() {
   static const std::vector<NuisanceEntry> entries{
-      // Nuisances of the model, all of which but the extent of the grips are part of every model.
+      // Nuisances of the model, all of which but the last two are part of every model.
       MeshNuisance(),
       TimeStepNuisance(),
       ShapeNuisance(),
       GripJitterNuisance(),
       GripExtentNuisance(),
+      LoadScaleNuisance(),
       // Nuisances of each grip.
       GripPlacementNuisance(),
       GripComplianceNuisance(),

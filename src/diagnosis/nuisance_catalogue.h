@@ -1,8 +1,8 @@
 // The written list of all nuisances, and what turns it into columns for one fitted model.
 //
-// There are three kinds: nuisances of the model (mesh, time step, shape, extent of the grips), of
-// each grip, and of each recording (clock, frames). A kind has one signature, so that
-// nuisance_NAME.cc contains a card and one function. All columns refer to the rows of the same
+// There are three kinds: nuisances of the model (mesh, time step, shape, extent of the grips, scale
+// of the loads), of each grip, and of each recording (clock, frames). A kind has one signature, so
+// that nuisance_NAME.cc contains a card and one function. All columns refer to the rows of the same
 // LinearisedMisfit, in m per unit amount.
 #ifndef LACUNA_DIAGNOSIS_NUISANCE_CATALOGUE_H_
 #define LACUNA_DIAGNOSIS_NUISANCE_CATALOGUE_H_

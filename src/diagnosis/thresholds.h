@@ -106,6 +106,8 @@ struct RefitThresholds {
 struct NuisanceThresholds {
   // A misplaced grip, frame or registration, or the end of a grip, m; a misoriented one, rad.
   double shift = 1e-3, rotation = 0.02;
+  // The share by which measured forces may be wrong, all alike.
+  double load_scale = 0.2;
   // The time of a single frame, as a share of the frame spacing.
   double frame_time = 0.1;
   // The part of the last refinement's change that the fitted parameters cannot compensate for is

@@ -1,10 +1,12 @@
 #include "diagnosis/nuisance_catalogue.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <set>
 #include <string>
@@ -36,7 +38,9 @@ TEST(NuisanceCatalogue, HasACompleteCardForEachNuisance) {
       EXPECT_FALSE(card.acts_on_single_frames) << card.name;
     }
     const bool is_of_model = std::holds_alternative<ModelNuisance>(entry.make);
-    EXPECT_EQ(card.is_always_in_model, is_of_model && card.name != "grip_extent") << card.name;
+    EXPECT_EQ(card.is_always_in_model,
+              is_of_model && card.name != "grip_extent" && card.name != "load_scale")
+        << card.name;
     if (std::holds_alternative<GripNuisance>(entry.make)) {
       EXPECT_EQ(card.source, NuisanceSource::kGrip) << card.name;
     }
@@ -165,6 +169,45 @@ TEST(NuisanceCatalogue, ExtendsAGripLikeAShorterBar) {
   // Beside what the parameters follow, little is left, so that the column can be multiplied.
   EXPECT_LT(left.norm(), 0.5 * expected.norm());
   EXPECT_LT(kFurther * column.norm(), 2 * left.norm());
+}
+
+// Two loads that are 1 % larger, against their column.
+TEST(NuisanceCatalogue, ScalesAllMeasuredForcesAlike) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const auto study_with = [&](const std::string& first, const std::string& second) {
+    std::ofstream(folder / "recording.yaml", std::ios::app) << fmt::format(
+        "forces: [{{constant: [0, 0, {}], region: {{half_space: {{point: [40 mm, 0, 0], normal: "
+        "[1, "
+        "0, 0]}}}}}}, {{constant: [0, {}, 0], region: {{half_space: {{point: [60 mm, 0, 0], "
+        "normal: "
+        "[1, 0, 0]}}}}}}]\n",
+        first, second);
+    PredictionStudy study = ReadBarStudy(folder.Path());
+    WriteBarRecording(folder.Path(), FilmHeldBar({}));
+    return study;
+  };
+  const auto column_of = [](const PredictionStudy& study) {
+    const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
+    const LinearisedMisfit misfit = problem.Linearise(problem.Start(), {.with_jacobian = true});
+    EXPECT_TRUE(misfit.usable) << misfit.message;
+    for (const NuisanceCandidate& nuisance :
+         ModelNuisances({problem, problem.Start(), misfit, GripMotions{}, Eigen::MatrixXd()}))
+      if (nuisance.card.name == "load_scale") return Eigen::VectorXd(nuisance.columns.col(0));
+    return Eigen::VectorXd();
+  };
+  const auto residual_of = [](const PredictionStudy& study) {
+    const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
+    return problem.Linearise(problem.Start()).residual;
+  };
+  EXPECT_EQ(column_of(ReadBarStudy(folder.Path())).size(), 0) << "nothing acts on the bar";
+  const PredictionStudy study = study_with("20 mN", "-10 mN");
+  const Eigen::VectorXd column = column_of(study);
+  const Eigen::VectorXd change =
+      (residual_of(study_with("20.2 mN", "-10.1 mN")) - residual_of(study)) / 0.01;
+  ASSERT_EQ(column.size(), change.size());
+  EXPECT_GT(change.norm(), 1e-4);
+  EXPECT_LT((column - change).norm(), 0.02 * change.norm());
 }
 
 // A load cell shares the clock of its recording, but is no point that may be misplaced.
