@@ -4,28 +4,12 @@
 #include <yaml-cpp/yaml.h>
 
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "core/config_node.h"
 #include "core/suggestion.h"
 #include "core/text_file.h"
 
 namespace lacuna {
-namespace {
-
-// What to add to the refusal of an unknown key that is the rest of the number of the key `before`
-// it, after a decimal comma; empty where it is not.
-std::string DecimalCommaHint(const ConfigNode& node, const std::string& before) {
-  const std::string meant = node.WithDecimalPoint(before);
-  try {
-    ParseAnyQuantity(meant);
-  } catch (const std::invalid_argument&) {
-    return "";
-  }
-  return "; " + DecimalCommaText(meant);
-}
-
-}  // namespace
 
 Config::Config(std::shared_ptr<ConfigNode> node) : node_(std::move(node)) {}
 
@@ -105,7 +89,7 @@ void Config::RefuseUnknownKeys() const {
   for (const auto& entry : *node_->yaml) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
     if (!node_->Asked(key)) {
-      const std::string comma = DecimalCommaHint(*node_, before);
+      const std::string comma = node_->DecimalCommaHint(before, /*expected=*/nullptr);
       node_->Fail(entry.first.Mark(), node_->Field(key),
                   "unknown key" + (comma.empty() ? Suggestion(key, known) : comma));
     }

@@ -4,6 +4,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cctype>
+#include <stdexcept>
 #include <utility>
 
 #include "core/error.h"
@@ -44,7 +45,7 @@ std::string ConfigNode::Scalar(const YAML::Node& entry, const std::string& field
   return entry.Scalar();
 }
 
-std::string ConfigNode::WithDecimalPoint(const std::string& key) const {
+std::string ConfigNode::DecimalCommaHint(const std::string& key, const Dimension* expected) const {
   for (auto entry = yaml->begin(); entry != yaml->end(); ++entry) {
     if (entry->first.Scalar() != key) continue;
     const YAML::Node value = entry->second;
@@ -52,7 +53,13 @@ std::string ConfigNode::WithDecimalPoint(const std::string& key) const {
     const std::string decimals = entry->first.Scalar();
     if (decimals.empty() || std::isdigit(static_cast<unsigned char>(decimals.front())) == 0)
       return "";
-    return value.Scalar() + "." + decimals;
+    const std::string meant = value.Scalar() + "." + decimals;
+    try {
+      expected != nullptr ? ParseQuantity(meant, *expected) : ParseAnyQuantity(meant).value;
+    } catch (const std::invalid_argument&) {
+      return "";
+    }
+    return "; " + DecimalCommaText(meant);
   }
   return "";
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/quantity.h"
 #include "core/yaml_document.h"
 
 namespace YAML {
@@ -43,10 +44,10 @@ struct ConfigNode {
   std::string Scalar(const YAML::Node& entry, const std::string& field,
                      const std::string& expected) const;
 
-  // The number that a decimal comma after `key` has split, with a point: YAML reads
-  // "{young_modulus: 0,2 MPa}" as the number 0 and a key "2 MPa" without a value. Empty where no
-  // such key follows.
-  std::string WithDecimalPoint(const std::string& key) const;
+  // What to add to a message where a decimal comma has split the quantity at `key`: YAML reads
+  // "{young_modulus: 0,2 MPa}" as the number 0 and a key "2 MPa" without a value. Empty where both
+  // do not make a quantity, of the dimension `expected` unless that is null.
+  std::string DecimalCommaHint(const std::string& key, const Dimension* expected) const;
 
   // Throws InputError "file:line:column: field: message" with the file that `field` was read from.
   [[noreturn]] void Fail(const YAML::Mark& mark, const std::string& field,

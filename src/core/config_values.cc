@@ -17,18 +17,6 @@ namespace {
 
 constexpr int kMaxListLength = 10'000'000;
 
-// What to add to the refusal of the value of `key` where a decimal comma has split it.
-std::string DecimalCommaHint(const ConfigNode& node, const std::string& key,
-                             const Dimension& dimension) {
-  const std::string meant = node.WithDecimalPoint(key);
-  try {
-    ParseQuantity(meant, dimension);
-  } catch (const std::invalid_argument&) {
-    return "";
-  }
-  return "; " + DecimalCommaText(meant);
-}
-
 }  // namespace
 
 double Config::Quantity(const std::string& key, const Dimension& dimension,
@@ -43,7 +31,7 @@ double Config::Quantity(const std::string& key, const Dimension& dimension,
     return value;
   } catch (const std::invalid_argument& problem) {
     node_->Fail(entry.Mark(), node_->Field(key),
-                problem.what() + DecimalCommaHint(*node_, key, dimension));
+                problem.what() + node_->DecimalCommaHint(key, &dimension));
   }
 }
 

@@ -1,6 +1,7 @@
 // Measured forces that are too small or too large by the same factor: a load cell or an amplifier
-// that was calibrated wrongly, or an unknown inclination of a load.
+// that was calibrated wrongly.
 #include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "diagnosis/nuisance_catalogue.h"

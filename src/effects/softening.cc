@@ -89,11 +89,10 @@ class SofteningLaw {
         .family = EffectFamily::kElasticity,
         .title = "Softening by the largest past strain (Mullins effect)",
         .equation =
-            "P = F dev Q + ⅓ (tr Q) cof F,  Q = (λ (tr B) I + 2μ B)/(1 + κ/κ₀),  κ = largest "
-            "√(B:C:B) "
-            "so far (in a bar: the largest strain),  B = dev E + ⅓ (J − 1) I,  E = ½ (FᵀF − I),  J "
-            "= "
-            "det F,  λ, μ from modulus m and Poisson ratio, C from the same with m = 1",
+            "P = F dev Q + ⅓ (tr Q) cof F,  Q = (λ (tr B) I + 2μ B)/(1 + κ/κ₀),  "
+            "κ = largest √(B:C:B) so far (in a bar: the largest strain),  "
+            "B = dev E + ⅓ (J − 1) I,  E = ½ (FᵀF − I),  J = det F,  λ, μ from modulus m and "
+            "Poisson ratio, C from the same with m = 1",
         .citation =
             "L. Mullins, Softening of Rubber by Deformation, Rubber Chemistry and Technology "
             "42, 1969; J. C. Simo, On a Fully Three-dimensional Finite-strain Viscoelastic "

@@ -8,9 +8,8 @@
 //
 // C is that of a full isotropic solid, not only of its deviator: with the Poisson ratio of the
 // material (the default) the branch is a scaled copy of it at small strain, so that m is the extra
-// Young's modulus
-// that a sudden stretch meets, a held body relaxes without changing shape, and nearly
-// incompressible bodies stay so.
+// Young's modulus that a sudden stretch meets, a held body relaxes without changing shape, and
+// nearly incompressible bodies stay so.
 //
 // Update (R. L. Taylor, K. S. Pister, G. L. Goudreau 1970): exact for a strain that changes
 // linearly in the step,
@@ -90,11 +89,10 @@ class ViscoelasticLaw {
         .family = EffectFamily::kLossInside,
         .title = "Viscoelastic branch (Maxwell element of a Prony series)",
         .equation =
-            "P = F dev Q + ⅓ (tr Q) cof F,  dQ/dt + Q/τ = d/dt (λ (tr B) I + 2μ B),  B = dev E + ⅓ "
-            "(J "
-            "− 1) I,  E = ½ (FᵀF − I),  J = det F,  λ and μ from modulus m and Poisson ratio;  in "
-            "a "
-            "sudden stretch ε held: stress m ε exp(−t/τ) on top of the elastic one",
+            "P = F dev Q + ⅓ (tr Q) cof F,  dQ/dt + Q/τ = d/dt (λ (tr B) I + 2μ B),  "
+            "B = dev E + ⅓ (J − 1) I,  E = ½ (FᵀF − I),  J = det F,  λ and μ from modulus m and "
+            "Poisson ratio;  in a sudden stretch ε held: stress m ε exp(−t/τ) on top of the "
+            "elastic one",
         .citation =
             "J. C. Simo, On a Fully Three-dimensional Finite-strain Viscoelastic Damage Model, "
             "Computer Methods in Applied Mechanics and Engineering 60, 1987; G. A. Holzapfel, "

@@ -3,10 +3,10 @@
 //   B = E − ⅓ (tr E) I + ⅓ (J − 1) I,    J = det F.
 //
 // At small strain B = E. In a motion that keeps the volume tr B = 0 at any strain, whereas tr E is
-// positive and of second order: 0.05 in a stretch by 20 %. With Hooke's law for a nearly
-// incompressible solid the stress λ (tr E) I of such a stretch would be many times the one that is
-// meant, 36 times at a Poisson's ratio of 0.499. B is a polynomial of F and invariant under
-// rotations, as E is.
+// positive and of second order: 0.053 in a stretch by 20 %. With Hooke's law for a nearly
+// incompressible solid λ (tr E) I would be many times the stress that is meant: at a Poisson's
+// ratio of 0.499, λ tr E is 8.9 m with Young's modulus m, instead of 0.2 m. B is a polynomial of F
+// and invariant under rotations, as E is.
 //
 // The stress Q that is conjugate to B has the power Q : Ḃ per volume of the reference
 // configuration; the first Piola–Kirchhoff stress is

@@ -163,33 +163,6 @@ bool SizeMayBeZero(const CalibrationRecord& record, const DiagnosisRecord& befor
   return has_size;
 }
 
-namespace {
-
-// The rms of all measured values over their σ, those of points and of forces and torques: of the
-// held-out ones or, where no point was held out, of the fitted ones.
-double ErrorWithReactions(const CalibrationRecord& record) {
-  const bool has_held_out =
-      std::any_of(record.recordings.begin(), record.recordings.end(),
-                  [](const FittedRecording& recording) { return recording.held_out.points > 0; });
-  double squares = 0, values = 0;
-  const auto add = [&](double count, double rms_over_sigma) {
-    squares += count * rms_over_sigma * rms_over_sigma;
-    values += count;
-  };
-  for (const FittedRecording& recording : record.recordings) {
-    const MisfitMeasure& points = has_held_out ? recording.held_out : recording.in_fit;
-    // A scan measures the distance along the normal.
-    add((recording.scan ? 1 : 3) * points.points, points.rms_over_sigma);
-    for (const FittedReaction& reaction : recording.reactions) {
-      const ReactionMeasure& measure = has_held_out ? reaction.held_out : reaction.in_fit;
-      add(measure.values, measure.rms_over_sigma);
-    }
-  }
-  return values > 0 ? std::sqrt(squares / values) : 0;
-}
-
-}  // namespace
-
 ModelErrors ErrorsOf(const CalibrationRecord& record) {
   struct Sum {
     double square = 0, over_sigma = 0, at_measured_places = 0;
@@ -217,6 +190,31 @@ ModelErrors ErrorsOf(const CalibrationRecord& record) {
   errors.held_out_at_measured_places = judged.Mean(judged.at_measured_places);
   return errors;
 }
+
+namespace {
+
+// The rms of all measured values over their σ, those of points and of forces and torques: of the
+// held-out ones or, where no point was held out, of the fitted ones.
+double ErrorWithReactions(const CalibrationRecord& record) {
+  const bool has_held_out = ErrorsOf(record).has_held_out;
+  double squares = 0, values = 0;
+  const auto add = [&](double count, double rms_over_sigma) {
+    squares += count * rms_over_sigma * rms_over_sigma;
+    values += count;
+  };
+  for (const FittedRecording& recording : record.recordings) {
+    const MisfitMeasure& points = has_held_out ? recording.held_out : recording.in_fit;
+    // A scan measures the distance along the normal.
+    add((recording.scan ? 1 : 3) * points.points, points.rms_over_sigma);
+    for (const FittedReaction& reaction : recording.reactions) {
+      const ReactionMeasure& measure = has_held_out ? reaction.held_out : reaction.in_fit;
+      add(measure.values, measure.rms_over_sigma);
+    }
+  }
+  return values > 0 ? std::sqrt(squares / values) : 0;
+}
+
+}  // namespace
 
 std::vector<ParameterMove> MovesBetween(const CalibrationRecord& before,
                                         const CalibrationRecord& after) {

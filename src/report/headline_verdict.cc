@@ -16,9 +16,6 @@
 namespace lacuna {
 namespace {
 
-// A statement that is at least this probable is more likely true than not.
-constexpr double kLikely = 0.5;
-
 std::string NextStep(const DiagnosisRecord& diagnosis) {
   const std::string steps = DescribeNextSteps(diagnosis);
   return steps.empty() ? "" : " To decide: " + steps + (steps.ends_with('.') ? "" : ".");
@@ -77,14 +74,11 @@ std::string AmbiguousSentence(const ReportedModel& model) {
 // coarse elements, for instance, what is left of their error may look like a grip that reaches
 // further. Null: there is none.
 const RecordedNuisance* ExplainsMoreThanNamed(const DiagnosisRecord& diagnosis) {
-  const RecordedNuisance* most = nullptr;
   double named = 0;
-  for (const RecordedNuisance& nuisance : diagnosis.nuisances) {
+  for (const RecordedNuisance& nuisance : diagnosis.nuisances)
     if (std::count(diagnosis.effects.begin(), diagnosis.effects.end(), nuisance.name) > 0)
       named = std::max(named, nuisance.explained);
-    else if (nuisance.adopted && (most == nullptr || nuisance.explained > most->explained))
-      most = &nuisance;
-  }
+  const RecordedNuisance* most = BestAdoptedNuisance(diagnosis);
   return most != nullptr && most->explained > named ? most : nullptr;
 }
 

@@ -31,12 +31,8 @@ WorstReaction FindWorstReaction(const CalibrationRecord& record) {
   return worst;
 }
 
-bool HasLikelyMistake(const ReadingMistakes& mistakes) {
-  return mistakes.factor || mistakes.offset || mistakes.delay;
-}
-
-// What a mistake in a reading may be, as the second half of a sentence.
-std::string DescribeMistakes(const FittedReaction& reaction) {
+// What mistakes in a reading would explain it, as halves of sentences; none is known: empty.
+std::vector<std::string> LikelyMistakes(const FittedReaction& reaction) {
   const ReadingMistakes& mistakes = reaction.likely_mistakes;
   std::vector<std::string> likely;
   if (mistakes.factor && *mistakes.factor < 0)
@@ -56,6 +52,12 @@ std::string DescribeMistakes(const FittedReaction& reaction) {
     likely.push_back(fmt::format("if it came {} {} (`delay_deviation`)",
                                  DurationText(std::abs(*mistakes.delay)),
                                  *mistakes.delay > 0 ? "late" : "early"));
+  return likely;
+}
+
+// What a mistake in a reading may be, as the second half of a sentence.
+std::string DescribeMistakes(const FittedReaction& reaction,
+                             const std::vector<std::string>& likely) {
   if (!likely.empty()) return fmt::format("its reading would fit {}.", fmt::join(likely, ", or "));
   return fmt::format(
       "another sign (`exerted_by`), {}a delay (`delay_deviation`) or another unit of its reading "
@@ -82,9 +84,10 @@ std::string MissedReactionSentence(const ReportedModel& model) {
   // Where an effect has been named that explains the reading, only a mistake that fits is worth a
   // doubt.
   const bool is_explained = model.diagnosis && model.diagnosis->verdict == Verdict::kMissing;
-  if (is_explained && !HasLikelyMistake(reaction->likely_mistakes)) return text;
+  const std::vector<std::string> likely = LikelyMistakes(*reaction);
+  if (is_explained && likely.empty()) return text;
   return text + " Before an effect is looked for, the load cell should be checked: " +
-         DescribeMistakes(*reaction);
+         DescribeMistakes(*reaction, likely);
 }
 
 }  // namespace lacuna

@@ -13,6 +13,7 @@
 #include "core/text_layout.h"
 #include "record/verdict.h"
 #include "report/quantity_text.h"
+#include "report/verdict_text.h"
 
 namespace lacuna {
 namespace {
@@ -29,9 +30,6 @@ std::string RivalsText(const PlanRecord& plan) {
     rivals.push_back(fmt::format("{} ({})", rival.title, PercentText(rival.of_diagnosis)));
   return EnumerationText(rivals);
 }
-
-// A statement that is at least this probable is more likely true than not.
-constexpr double kLikely = 0.5;
 
 // What is open, from the most general verdict to the choice among rivals.
 std::string WhatIsOpen(const PlanRecord& plan) {

@@ -136,8 +136,7 @@ std::string AdequacySentence(const RecordedAdequacy& adequacy) {
   if (adequacy.is_tolerated)
     return fmt::format(
         "{} leaves more than noise does (p = {:.3f}, {:.2f} σ over all frames), but only {:.2g} % "
-        "of "
-        "the squared misfit that was explained: no more than the error of any model.",
+        "of the squared misfit that was explained: no more than the error of any model.",
         beside, adequacy.p, adequacy.rms_over_sigma, 100 * adequacy.left_share);
   const std::string share =
       std::isfinite(adequacy.left_share)
@@ -247,13 +246,18 @@ std::vector<std::string> TestedBeside(const DiagnosisRecord& diagnosis, const st
   return std::erase(beside, effect) > 0 ? beside : std::vector<std::string>{};
 }
 
-std::string CorrectedError(const DiagnosisRecord& diagnosis) {
-  const ModelErrors& errors = diagnosis.errors;
-  if (errors.rms_over_sigma < kBeyondNoise || errors.without_nuisances >= kBeyondNoise) return "";
+const RecordedNuisance* BestAdoptedNuisance(const DiagnosisRecord& diagnosis) {
   const RecordedNuisance* most = nullptr;
   for (const RecordedNuisance& nuisance : diagnosis.nuisances)
     if (nuisance.adopted && (most == nullptr || nuisance.explained > most->explained))
       most = &nuisance;
+  return most;
+}
+
+std::string CorrectedError(const DiagnosisRecord& diagnosis) {
+  const ModelErrors& errors = diagnosis.errors;
+  if (errors.rms_over_sigma < kBeyondNoise || errors.without_nuisances >= kBeyondNoise) return "";
+  const RecordedNuisance* most = BestAdoptedNuisance(diagnosis);
   if (most == nullptr) return "";
   return fmt::format("corrected for {}, the error is {:.1f} times the noise: {}", most->what,
                      errors.without_nuisances, most->advice);

@@ -34,6 +34,12 @@ std::string ModelLabel(size_t index, const std::string& added,
 // effect. Empty where it has examined a hypothesis without the effect.
 std::vector<std::string> TestedBeside(const DiagnosisRecord& diagnosis, const std::string& effect);
 
+// A statement that is at least this probable is more likely true than not.
+inline constexpr double kLikely = 0.5;
+
+// The nuisance that explains most of those that every model contains; null: there is none.
+const RecordedNuisance* BestAdoptedNuisance(const DiagnosisRecord& diagnosis);
+
 // An error beyond the noise that the adopted nuisances explain: "corrected for the size of the
 // elements, the error is 1.0 times the noise: choose a smaller mesh.max_volume". Names the nuisance
 // that explains most. Empty where the error is noise as it is, or beyond noise even then.

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <string_view>
 
 #include "core/error.h"
+#include "scan/delimited_table.h"
 #include "scan/table_layout.h"
 #include "scan/table_numbers.h"
 #include "scan/table_text.h"
@@ -18,27 +18,23 @@ namespace {
 
 using Fields = std::vector<std::string_view>;
 
-constexpr std::array<std::string_view, 4> kColumns = {"name", "x", "y", "z"};
-
-bool HaveSameLetters(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char left, char right) { return IsSameLetter(left, right, false); });
-}
+constexpr std::array<const char*, 4> kColumns = {"name", "x", "y", "z"};
 
 // The positions of kColumns in the line of names.
-std::array<size_t, 4> FindColumns(const Fields& header, const std::filesystem::path& file,
+std::array<size_t, 4> FindColumns(const Fields& names, const std::filesystem::path& file,
                                   int line) {
+  DelimitedTable table;
+  table.file = file;
+  table.header.assign(names.begin(), names.end());
   std::array<size_t, 4> columns{};
   for (size_t k = 0; k < kColumns.size(); ++k) {
-    const auto found = std::find_if(header.begin(), header.end(), [k](std::string_view name) {
-      return HaveSameLetters(name, kColumns[k]);
-    });
-    if (found == header.end())
+    const std::optional<Eigen::Index> found = FindColumn(table, kColumns[k]);
+    if (!found)
       throw InputError({file.string(), line, 1},
                        fmt::format("has no column \"{}\"; the first line must name the columns: "
                                    "name, x, y and z",
                                    kColumns[k]));
-    columns[k] = static_cast<size_t>(found - header.begin());
+    columns[k] = static_cast<size_t>(*found);
   }
   return columns;
 }

@@ -18,8 +18,9 @@ struct MarkerPlace {
 // Reads a table with one marker per row and the columns `name`, `x`, `y` and `z`, in any order and
 // with letters of any case; other columns are ignored. Delimiters, quotes, comments and decimal
 // commas are those of delimited_table.h. Throws InputError at file:line:column when the file is
-// absent or empty, one of the columns is missing, a row has another number of entries than the
-// first line, or a coordinate is not a number or may have a separator of thousands.
+// absent or empty, one of the columns is missing or there twice, a row has another number of
+// entries than the first line, or a coordinate is not a number or may have a separator of
+// thousands.
 std::vector<MarkerPlace> ReadMarkerPlaces(const std::filesystem::path& file);
 
 }  // namespace lacuna
