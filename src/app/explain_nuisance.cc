@@ -36,9 +36,7 @@ std::string InADiagnosis(const NuisanceCard& card) {
         " It is left out of recordings with more than {} frames; the diagnosis then says so. "
         "`every` in the experiment reduces the number of frames.",
         kThresholds.nuisances.most_single_frames);
-  if (card.outgrows_first_order)
-    text +=
-        " A first-order prediction underestimates it, so less evidence suffices for it to count.";
+  if (card.outgrows_first_order) text += " A first-order prediction underestimates it.";
   if (card.shrinks_with_time_step)
     text += " The diagnosis may shorten a time step that the experiment leaves open.";
   return text;

@@ -15,10 +15,12 @@
 #define LACUNA_DIAGNOSIS_NUISANCE_H_
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "analysis/linear_evidence.h"
+#include "prediction/prediction_study.h"
 
 namespace lacuna {
 
@@ -54,6 +56,9 @@ struct NuisanceCard {
   // The columns are differences of further simulations, which rankings along the same motion share
   // (scene_columns.h). RankAlong() computes them anew along the motion of a refit.
   bool is_shared_in_scene = false;
+  // Each recording has amounts of its own for the parameters that a comparison of the recordings
+  // (recording_agreement.h) estimates, which is therefore made without them.
+  bool separates_recordings = false;
   // Each frame has amounts of its own: those of the fitted frames predict nothing in held-out ones.
   bool acts_on_single_frames = false;
   // Recordings with more frames than NuisanceThresholds::most_single_frames are left out.
@@ -64,6 +69,12 @@ struct NuisanceCard {
   // A shorter time step reduces the nuisance: the diagnosis may start again with one.
   bool shrinks_with_time_step = false;
   NuisanceTrial trial = {};
+};
+
+// A study, and the priors of the amounts of a nuisance that it does not contain yet.
+struct StudyBesideNuisance {
+  PredictionStudy study;
+  std::vector<LinearPrior> priors;
 };
 
 // A nuisance of one fitted model, with its directions there.
@@ -79,6 +90,10 @@ struct NuisanceCandidate {
   // The names of the recordings that C leaves out because they have more frames than
   // NuisanceThresholds::most_single_frames. If C has no columns, the nuisance cannot be tried.
   std::vector<std::string> left_out = {};
+  // Puts these amounts of the nuisance into the study; the priors become those of what is beyond
+  // them. C describes the motion without the nuisance, so that a refit with large amounts goes on
+  // from there, with the columns that the maker gives for that study. Empty: refits keep C.
+  std::function<void(const Eigen::VectorXd& amounts, StudyBesideNuisance* beside)> apply = {};
   // Why the nuisance cannot be tried, although it applies: C has no columns then. Empty: it can.
   std::string untried = "";
 };

@@ -1,5 +1,7 @@
 #include "diagnosis/nuisance_catalogue.h"
 
+#include <glog/logging.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
@@ -15,6 +17,7 @@ NuisanceEntry ShapeNuisance();
 NuisanceEntry GripJitterNuisance();
 NuisanceEntry GripExtentNuisance();
 NuisanceEntry LoadScaleNuisance();
+NuisanceEntry RecordingsDifferNuisance();
 NuisanceEntry GripPlacementNuisance();
 NuisanceEntry GripComplianceNuisance();
 NuisanceEntry ClockNuisance();
@@ -24,13 +27,14 @@ NuisanceEntry RegistrationDriftNuisance();
 
 const std::vector<NuisanceEntry>& NuisanceCatalogue() {
   static const std::vector<NuisanceEntry> entries{
-      // Nuisances of the model, all of which but the last two are part of every model.
+      // Nuisances of the model, all of which but the last three are part of every model.
       MeshNuisance(),
       TimeStepNuisance(),
       ShapeNuisance(),
       GripJitterNuisance(),
       GripExtentNuisance(),
       LoadScaleNuisance(),
+      RecordingsDifferNuisance(),
       // Nuisances of each grip.
       GripPlacementNuisance(),
       GripComplianceNuisance(),
@@ -104,6 +108,16 @@ std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
   for (const NuisanceEntry& entry : NuisanceCatalogue())
     if (std::holds_alternative<ModelNuisance>(entry.make)) entries.push_back(&entry);
   return Made(entries, context, known);
+}
+
+std::optional<NuisanceCandidate> ModelNuisanceNamed(const std::string& name,
+                                                    const NuisanceContext& context) {
+  for (const NuisanceEntry& entry : NuisanceCatalogue()) {
+    if (entry.card.name != name) continue;
+    std::vector<NuisanceCandidate> made = Made({&entry}, context, {});
+    return made.empty() ? std::nullopt : std::optional(std::move(made.front()));
+  }
+  LOG(FATAL) << "there is no nuisance " << name;
 }
 
 std::vector<NuisanceCandidate> SceneNuisances(const NuisanceContext& context) {

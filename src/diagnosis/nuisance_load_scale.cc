@@ -1,6 +1,7 @@
 // Measured forces that are too small or too large by the same factor: a load cell or an amplifier
 // that was calibrated wrongly.
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <memory>
 
@@ -38,6 +39,16 @@ EffectList LoadsOf(const Model& model) {
   return loads;
 }
 
+// A share x of the loads F is a share (x − a)/(1 + a) of the loads (1 + a) F.
+void Apply(const Eigen::VectorXd& amounts, StudyBesideNuisance* beside) {
+  const double share = amounts[0], scale = 1 + share;
+  for (PredictedRecording& item : beside->study.recordings)
+    for (MeasuredForce& force : item.recording.object.forces) force.forces *= scale;
+  LinearPrior& prior = beside->priors.front();
+  prior.mean = (prior.mean - share) / scale;
+  prior.deviation /= std::abs(scale);
+}
+
 std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   size_t most = 0;  // loads of a recording
   for (const RecordingModel& model : at.problem.models())
@@ -57,6 +68,7 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   NuisanceCandidate candidate;
   candidate.columns = misfit.jacobian.rightCols(static_cast<Eigen::Index>(most)).rowwise().sum();
   candidate.priors = {{0, kThresholds.nuisances.load_scale, false}};
+  candidate.apply = &Apply;
   return candidate;
 }
 

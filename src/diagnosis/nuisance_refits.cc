@@ -4,17 +4,73 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "diagnosis/effect_ranking.h"
 #include "diagnosis/effect_refit.h"
+#include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/refit_comparison.h"
 #include "diagnosis/scored_beside.h"
 #include "diagnosis/thresholds.h"
 
 namespace lacuna {
+namespace {
+
+// A nuisance is put into the study so many times, or until what remains of it is this share of the
+// deviation of its prior, whose square a linear column neglects.
+constexpr int kMostApplied = 4;
+constexpr double kSmallRest = 0.1;
+
+bool IsSmall(const Eigen::VectorXd& amounts, const std::vector<LinearPrior>& priors) {
+  for (Eigen::Index k = 0; k < amounts.size(); ++k)
+    if (!(std::abs(amounts[k]) <= kSmallRest * priors[static_cast<size_t>(k)].deviation))
+      return false;
+  return true;
+}
+
+// The refit with a nuisance. Where the nuisance can be put into the study, columns stand only for
+// what remains of it.
+EffectRefit RefitWithNuisance(const BaselineModel& baseline, const AdoptedNuisances& adopted,
+                              const NuisanceCandidate& nuisance, const NoiseLevel& noise) {
+  EffectRefit best = RefitWithout({baseline, adopted.And(nuisance)});
+  if (!nuisance.apply) return best;
+  const Eigen::Index width = nuisance.columns.cols();
+  StudyBesideNuisance beside{baseline.problem.WithEstimatedNoise(), nuisance.priors};
+  EffectRefit refit = best;
+  for (int k = 0; k < kMostApplied && refit.message.empty(); ++k) {
+    const Eigen::VectorXd amounts = refit.nuisance_amounts.tail(width);
+    if (IsSmall(amounts, beside.priors)) break;
+    nuisance.apply(amounts, &beside);
+    const CalibrationProblem problem(beside.study, baseline.problem.body()->mesh);
+    const Eigen::VectorXd values = refit.calibration.parameters;
+    const LinearisedMisfit misfit = problem.Linearise(
+        values,
+        {.with_jacobian = true, .correspondences = &baseline.misfit, .near = &baseline.misfit});
+    if (!misfit.usable || misfit.residual.size() != baseline.misfit.residual.size()) break;
+    std::optional<NuisanceCandidate> rest =
+        ModelNuisanceNamed(nuisance.card.name, {problem, values, misfit, {}, {}});
+    if (!rest || rest->columns.cols() != width) break;
+    rest->priors = beside.priors;
+    BaselineModel model{problem,
+                        values,
+                        misfit,
+                        baseline.progress,
+                        baseline.kept,
+                        baseline.noise,
+                        baseline.model_error};
+    refit = RefitWithout({model, adopted.And(*rest)});
+    if (refit.message.empty() && EvidenceOf(refit.hypothesis, noise).log_evidence >
+                                     EvidenceOf(best.hypothesis, noise).log_evidence)
+      best = refit;
+  }
+  return best;
+}
+
+}  // namespace
 
 void RefitRivalNuisances(const RefitContext& context, RefittedRanking* ranked) {
   const RefitThresholds& thresholds = kThresholds.refit;
@@ -41,8 +97,8 @@ void RefitRivalNuisances(const RefitContext& context, RefittedRanking* ranked) {
     Progress silent({.style = ProgressStyle::kSilent});
     BaselineModel model = context.model;
     model.progress = &silent;
-    const AdoptedNuisances with = context.ranking.adopted.And(nuisances[rivals[at]].candidate);
-    refits[at] = RefitWithout({model, with});
+    refits[at] = RefitWithNuisance(model, context.ranking.adopted, nuisances[rivals[at]].candidate,
+                                   context.ranking.noise);
     progress.Report(++done);
   });
   for (size_t k = 0; k < rivals.size(); ++k)

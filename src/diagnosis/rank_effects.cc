@@ -223,6 +223,17 @@ std::vector<TriedVariant> HypothesisScorer::Tried() const {
   return tried;
 }
 
+// The nuisances of the model without those that are what recordings are compared for.
+AdoptedNuisances SharedByRecordings(const EffectRanking& ranking) {
+  AdoptedNuisances shared = ranking.adopted.Always();
+  for (const ScoredNuisance& nuisance : ranking.nuisances) {
+    const NuisanceCard& card = nuisance.candidate.card;
+    if (nuisance.adopted && !card.is_always_in_model && !card.separates_recordings)
+      shared = shared.And(nuisance.candidate);
+  }
+  return shared;
+}
+
 }  // namespace
 
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
@@ -253,7 +264,7 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
   ranking.scene = std::move(all.scene);
   ranking.unknown_force = std::move(all.unknown_force);
   ranking.agreement =
-      CompareRecordings(problem, values, all.misfit, ranking.adopted, ranking.noise);
+      CompareRecordings(problem, values, all.misfit, SharedByRecordings(ranking), ranking.noise);
   all.misfit.jacobian.resize(0, 0);
   ranking.misfit = std::move(all.misfit);
   progress->End(fmt::format("{} effects in {} variants", ranking.effects.size(), ranking.variants));

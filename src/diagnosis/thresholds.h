@@ -108,6 +108,9 @@ struct NuisanceThresholds {
   double shift = 1e-3, rotation = 0.02;
   // The share by which measured forces may be wrong, all alike.
   double load_scale = 0.2;
+  // By how much a parameter may differ between recordings: a positive one as a share of itself,
+  // another one of half its plausible range.
+  double parameter_difference = 0.2;
   // The time of a single frame, as a share of the frame spacing.
   double frame_time = 0.1;
   // The part of the last refinement's change that the fitted parameters cannot compensate for is

@@ -82,12 +82,14 @@ std::vector<Eigen::Matrix3Xd> Film(const std::vector<std::shared_ptr<const Effec
 
 class LoadedBar : public testing::Test {
  protected:
+  // `reading`: of the load cell, per newton.
   PredictionStudy Record(const std::vector<std::shared_ptr<const Effect>>& hidden,
-                         const std::string& more = "", const std::string& effects = "") {
+                         const std::string& more = "", const std::string& effects = "",
+                         double reading = 1) {
     WriteBarRecording(folder_.Path(), Film(hidden));
     std::ofstream load(folder_ / "load.csv");
     load << "t,x,y,z\n";
-    for (int k = 0; k < kLoads; ++k) load << fmt::format("{},0,0,{}\n", k, LoadAt(k));
+    for (int k = 0; k < kLoads; ++k) load << fmt::format("{},0,0,{}\n", k, reading * LoadAt(k));
     load.close();
     std::ofstream(folder_ / "recording.yaml", std::ios::app) << R"(forces:
   - name: load
@@ -270,6 +272,29 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
     EXPECT_NEAR(effect.others[0].estimate.value, 2.5, 0.5);
     EXPECT_NEAR(effect.sizes.at(0).value, 4e4, 0.6e4);
   }
+}
+
+// The bar bends so far that the response to its load is not linear. To first order a wrong load
+// explains less than it does, and an effect that is fitted would be taken for it.
+TEST_F(LoadedBar, BendsAsUnderTheLoadThatItReallyBears) {
+  PredictionStudy study = Record({}, "", "", /*reading=*/1.4);
+  const TetMesh mesh = BarMesh({7, 1, 1}, 2);
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, &study, &progress_);
+  ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
+  const CalibrationProblem problem(study, mesh);
+  DiagnosisOptions options;
+  options.refits = 2;
+  const Diagnosis diagnosis = Diagnose(problem, fit.calibration.parameters, options, &progress_);
+  EXPECT_THAT(diagnosis.effects, testing::Contains("load_scale"))
+      << ExplainVerdict(RecordOf(diagnosis));
+  const auto scale = std::find_if(
+      diagnosis.nuisances.begin(), diagnosis.nuisances.end(),
+      [](const ScoredNuisance& nuisance) { return nuisance.candidate.card.name == "load_scale"; });
+  ASSERT_NE(scale, diagnosis.nuisances.end());
+  ASSERT_TRUE(scale->refitted.has_value());
+  EXPECT_GT(*scale->refitted, scale->evidence + 2);
+  for (const RankedEffect& effect : diagnosis.ranking)
+    EXPECT_GT(*scale->refitted, effect.evidence) << effect.scored.candidate.type;
 }
 
 // A bar is stretched uniformly by two grips, whose motion is known from noisy markers. The nuisance

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <optional>
@@ -13,12 +14,16 @@
 #include <utility>
 
 #include "calibration/calibration_problem.h"
+#include "diagnosis/diagnosis.h"
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/recorded_diagnosis.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
+#include "report/verdict_text.h"
 #include "support/held_bar.h"
 #include "support/silent_fit.h"
+#include "support/silent_progress.h"
 #include "support/temporary_folder.h"
 #include "support/uniformity.h"
 
@@ -28,15 +33,15 @@ namespace {
 constexpr double kMarkerNoise = 5e-5, kPlaceDeviation = 2e-4;  // m
 constexpr int kPairs = 60;
 
-// The fit of two recordings without noise, linearised. Noise is added to the residual: it enters
-// linearly. With `alone`, only that recording is fitted.
+// The fit of two recordings, without noise unless it is given, linearised. Noise may be added to
+// the residual: it enters linearly. With `alone`, only that recording is fitted.
 struct TwoRecordings {
   // The second recording's Young's modulus is `factor` times the first one's.
-  explicit TwoRecordings(double factor, std::optional<int> alone = {}) {
+  explicit TwoRecordings(double factor, std::optional<int> alone = {}, double noise = 0) {
     std::string entries;
     for (int r = 0; r < 2; ++r) {
       HeldBarTruth truth;
-      truth.noise = 0;
+      truth.noise = noise;
       if (r == 1) {
         truth.hold_force = {0, -0.03, 0.05};
         truth.young_modulus *= factor;
@@ -153,6 +158,37 @@ TEST(RecordingAgreement, EstimatesWhatAFitToOneRecordingFinds) {
           << parameter.name;
     }
   }
+}
+
+// A model whose parameters may differ is a hypothesis beside the effects.
+TEST(RecordingAgreement, IsWeighedAgainstTheEffects) {
+  const TwoRecordings pair(1.08, {}, kMarkerNoise);
+  SilentProgress progress;
+  DiagnosisOptions options;
+  options.refits = 2;
+  const Diagnosis diagnosis = Diagnose(*pair.problem, pair.values, options, &progress);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << ExplainVerdict(RecordOf(diagnosis));
+  EXPECT_THAT(diagnosis.effects, testing::Contains("recordings_differ"));
+  EXPECT_TRUE(diagnosis.agreement.Disagree()) << "although the model has the nuisance";
+}
+
+TEST(RecordingAgreement, HasColumnsOfEachRecording) {
+  const TwoRecordings pair(1);
+  const std::vector<NuisanceCandidate> nuisances = ModelNuisances(
+      {*pair.problem, pair.values, pair.misfit, GripMotions{}, Eigen::MatrixXd()}, {});
+  const auto differ = std::find_if(nuisances.begin(), nuisances.end(), [](const auto& nuisance) {
+    return nuisance.card.name == "recordings_differ";
+  });
+  ASSERT_NE(differ, nuisances.end());
+  ASSERT_EQ(differ->columns.cols(), 6);
+  const Eigen::MatrixXd of_both = pair.misfit.jacobian.leftCols(3);
+  const Eigen::MatrixXd of_first = differ->columns.leftCols(3),
+                        of_second = differ->columns.rightCols(3);
+  EXPECT_EQ(of_first + of_second, of_both);
+  const Eigen::Index second = pair.misfit.parts.back().first_row;
+  EXPECT_EQ(of_first.topRows(second), of_both.topRows(second));
+  EXPECT_TRUE(of_first.bottomRows(of_first.rows() - second).isZero(0));
+  EXPECT_EQ(differ->priors[0].deviation, 0.2 * pair.values[0]);
 }
 
 TEST(RecordingAgreement, NeedsTwoFittedRecordings) {
