@@ -153,10 +153,15 @@ double SquareAlong(const Eigen::VectorXd& along, const Eigen::MatrixXd& informat
   return known > 0 ? std::pow(along.dot(score), 2) / known : 0;
 }
 
+// What an error of the model of this length may leave of a χ².
+double Beyond(double model_error, double chi_square) {
+  return std::pow(std::max(0.0, std::sqrt(chi_square) - model_error), 2);
+}
+
 // Fills in what the test says of one parameter, with the information M and the score s of all
 // differences.
 void JudgeParameter(Eigen::Index parameter, const Eigen::MatrixXd& information,
-                    const Eigen::VectorXd& score, AgreementTest* test) {
+                    const Eigen::VectorXd& score, double model_error, AgreementTest* test) {
   const Eigen::Index p = test->change.rows(), count = test->change.cols();
   std::vector<Eigen::Index> of_parameter;
   for (Eigen::Index i = 0; i + 1 < count; ++i) of_parameter.push_back(i * p + parameter);
@@ -169,14 +174,15 @@ void JudgeParameter(Eigen::Index parameter, const Eigen::MatrixXd& information,
   test->odd(parameter, count - 1) = SquareAlong(all, information, score);
   const DeterminedDirections own = DeterminedByInformation(information(of_parameter, of_parameter));
   if (own.Count() > 0)
-    test->p_values[parameter] = ChiSquareTail(own.ChiSquareOf(score(of_parameter)), own.Count());
+    test->p_values[parameter] =
+        ChiSquareTail(Beyond(model_error, own.ChiSquareOf(score(of_parameter))), own.Count());
 }
 
 }  // namespace
 
 AgreementTest TestAgreement(const std::vector<RecordingRows>& recordings,
                             const std::vector<LinearPrior>& shared_priors,
-                            const Eigen::VectorXd& typical, double variance) {
+                            const Eigen::VectorXd& typical, double variance, double model_error) {
   const Eigen::Index count = static_cast<Eigen::Index>(recordings.size());
   const Eigen::Index p = typical.size();
   CHECK_GE(count, 2);
@@ -196,7 +202,7 @@ AgreementTest TestAgreement(const std::vector<RecordingRows>& recordings,
   const Eigen::VectorXd differences = contrast * mean.head(count * p);
   const DeterminedDirections determined = DeterminedByCovariance(
       contrast * covariance.topLeftCorner(count * p, count * p) * contrast.transpose());
-  test.chi_square = determined.ChiSquareOf(differences);
+  test.chi_square = Beyond(model_error, determined.ChiSquareOf(differences));
   test.degrees_of_freedom = determined.Count();
   if (test.degrees_of_freedom > 0)
     test.p_value = ChiSquareTail(test.chi_square, test.degrees_of_freedom);
@@ -209,7 +215,7 @@ AgreementTest TestAgreement(const std::vector<RecordingRows>& recordings,
   const Eigen::VectorXd score = information * differences;
   test.p_values = Eigen::VectorXd::Ones(p);
   test.odd = Eigen::MatrixXd::Zero(p, count);
-  for (Eigen::Index k = 0; k < p; ++k) JudgeParameter(k, information, score, &test);
+  for (Eigen::Index k = 0; k < p; ++k) JudgeParameter(k, information, score, model_error, &test);
   return test;
 }
 

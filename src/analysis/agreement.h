@@ -11,6 +11,11 @@
 // has the χ² distribution. If only the differences of the components S of D may be other than 0,
 //   χ²_S = s_Sᵀ (M_SS)⁻¹ s_S,   M = Cov(D)⁻¹,   s = M D
 // is the score test (Rao 1948), here the likelihood ratio test, with |S| degrees of freedom.
+//
+// Besides, the residual of all recordings together may contain an error e of the model, of at most
+// the length u (in √v) and in any direction. It changes √χ² by at most u, so that
+//   (max(0, √χ² − u))²
+// is what is left for chance and for parameters that differ.
 #ifndef LACUNA_ANALYSIS_AGREEMENT_H_
 #define LACUNA_ANALYSIS_AGREEMENT_H_
 
@@ -34,7 +39,7 @@ struct AgreementTest {
   // p × recordings: the estimate of each recording, as the change from the joint one, and its
   // standard deviation, which is infinite where the recording does not determine the parameter.
   Eigen::MatrixXd change, deviation;
-  double chi_square = 0;
+  double chi_square = 0;       // beyond the error of the model
   int degrees_of_freedom = 0;  // the differences that the recordings determine
   double p_value = 1;          // 1 without degrees of freedom
   Eigen::VectorXd p_values;    // p: of each parameter, if it is the only one that differs
@@ -44,10 +49,12 @@ struct AgreementTest {
 };
 
 // `typical` (p): a change of each parameter that would matter to the user. Differences that are not
-// known better than that are left out. CHECKs that there are two recordings or more, and the sizes.
+// known better than that are left out. `variance`: v. `model_error`: u. CHECKs that there are two
+// recordings or more, and the sizes.
 AgreementTest TestAgreement(const std::vector<RecordingRows>& recordings,
                             const std::vector<LinearPrior>& shared_priors,
-                            const Eigen::VectorXd& typical, double variance);
+                            const Eigen::VectorXd& typical, double variance,
+                            double model_error = 0);
 
 }  // namespace lacuna
 

@@ -91,7 +91,8 @@ std::string WhyWithoutNoise(const std::vector<RecordingModel>& models) {
       most = std::max(most, model.recording().FittedFrames().size());
   if (most == 0) return "no recording of markers is fitted";
   if (most < kFewestFrames) return "fewer than three frames of markers are fitted";
-  return "the markers do not move at all, or none is seen in three frames that follow one another";
+  return "no marker is seen in three frames that follow one another, or their values contain no "
+         "noise: the markers do not move at all, or along a straight line";
 }
 
 }  // namespace

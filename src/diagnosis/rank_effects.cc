@@ -263,8 +263,8 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
   ranking.untried = std::move(all.untried);
   ranking.scene = std::move(all.scene);
   ranking.unknown_force = std::move(all.unknown_force);
-  ranking.agreement =
-      CompareRecordings(problem, values, all.misfit, SharedByRecordings(ranking), ranking.noise);
+  ranking.agreement = CompareRecordings(problem, values, all.misfit, SharedByRecordings(ranking),
+                                        ranking.noise, ranking.ModelError());
   all.misfit.jacobian.resize(0, 0);
   ranking.misfit = std::move(all.misfit);
   progress->End(fmt::format("{} effects in {} variants", ranking.effects.size(), ranking.variants));

@@ -99,7 +99,7 @@ std::vector<Eigen::Index> OwnParameters(const CalibrationProblem& problem, size_
 
 AgreementRecord CompareRecordings(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                                   const LinearisedMisfit& misfit, const AdoptedNuisances& shared,
-                                  const NoiseLevel& noise) {
+                                  const NoiseLevel& noise, double model_error) {
   AgreementRecord record;
   const Eigen::Index of_model = static_cast<Eigen::Index>(problem.study().fitted.size());
   std::vector<size_t> fitted;
@@ -142,8 +142,9 @@ AgreementRecord CompareRecordings(const CalibrationProblem& problem, const Eigen
     recording.shared = shared_columns(rows, Eigen::all);
     record.recordings.push_back(problem.models()[r].recording().name);
   }
-  const AgreementTest test = TestAgreement(
-      recordings, shared_priors, TypicalChanges(problem, values, of_model), noise.variance);
+  const AgreementTest test =
+      TestAgreement(recordings, shared_priors, TypicalChanges(problem, values, of_model),
+                    noise.variance, std::sqrt(2 * model_error));
   record.chi_square = test.chi_square;
   record.degrees_of_freedom = test.degrees_of_freedom;
   record.p_value = test.p_value;

@@ -20,11 +20,12 @@ namespace lacuna {
 inline constexpr Eigen::Index kMostSharedMarkers = 60;
 
 // `misfit`: of the problem at the fitted `values`, with the columns of its parameters first.
-// `shared`: nuisances of the model, with the same amounts in all recordings. Empty where fewer than
-// two recordings were fitted or no parameter of the model was.
+// `shared`: nuisances of the model, with the same amounts in all recordings. `model_error`: of the
+// model in any direction (EffectRanking::ModelError()), which explains differences, too. Empty
+// where fewer than two recordings were fitted or no parameter of the model was.
 AgreementRecord CompareRecordings(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                                   const LinearisedMisfit& misfit, const AdoptedNuisances& shared,
-                                  const NoiseLevel& noise);
+                                  const NoiseLevel& noise, double model_error = 0);
 
 }  // namespace lacuna
 

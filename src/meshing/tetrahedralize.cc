@@ -143,16 +143,27 @@ void NoteUnmetBounds(const TetOptions& options, MeshResult& result) {
 constexpr double kManyMore = 10;
 constexpr Eigen::Index kFewTets = 2000;
 
-void NoteAFineSurface(const TriMesh& surface, const TetOptions& options, MeshResult& result) {
+// With fewer triangles, relative to the tetrahedra, it is not the surface that makes them small.
+constexpr Eigen::Index kTetsPerTriangle = 20;
+
+void NoteManyTets(const TriMesh& surface, const TetOptions& options, MeshResult& result) {
   if (options.max_volume == 0) return;
   const double asked = result.quality.total_volume / options.max_volume;
   const Eigen::Index tets = result.quality.tets;
   if (tets < kFewTets || static_cast<double>(tets) < kManyMore * asked) return;
-  result.notes.push_back(
-      fmt::format("the mesh has {} tetrahedra because it must match the surface's {} triangles; "
-                  "max_volume {:.4g} m^3 alone would need about {:.0f}, so a coarser surface would "
-                  "make a faster model",
-                  tets, surface.triangles.cols(), options.max_volume, std::max(1.0, asked)));
+  const std::string alone = fmt::format("max_volume {:.4g} m^3 alone would need about {:.0f}",
+                                        options.max_volume, std::max(1.0, asked));
+  if (tets > kTetsPerTriangle * surface.triangles.cols())
+    result.notes.push_back(fmt::format(
+        "the mesh has {} tetrahedra because the body is thin, and elements of the required shape "
+        "are as wide as it is thick; {}. `radius_edge_ratio: 3` and `min_dihedral_angle: 0` allow "
+        "flatter ones",
+        tets, alone));
+  else
+    result.notes.push_back(
+        fmt::format("the mesh has {} tetrahedra because it must match the surface's {} triangles; "
+                    "{}, so a coarser surface would make a faster model",
+                    tets, surface.triangles.cols(), alone));
 }
 
 // What to do where one component lies within another.
@@ -289,7 +300,7 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
     return result;
   }
   NoteUnmetBounds(options, result);
-  NoteAFineSurface(surface, options, result);
+  NoteManyTets(surface, options, result);
   if (options.order == 2) result.mesh = ToQuadratic(result.mesh);
   result.quality.nodes = result.mesh.NodeCount();
   result.status = MeshStatus::kUsable;

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "core/first_few.h"
 #include "geometry/rigid_fit.h"
@@ -222,82 +221,6 @@ std::string DoubtOfPlaces(const PredictionStudy& study, const PredictedRecording
   const std::string doubt = DoubtOfPlaces(markers.places, measured, markers.names, expected);
   return doubt.empty() ? ""
                        : fmt::format("{}: in frame {}, {}", item.name, item.frames.front(), doubt);
-}
-
-namespace {
-
-// The squares of `values` that are left when the best multiple of `shape` is subtracted.
-double RemainsBeside(const Eigen::VectorXd& values, const Eigen::VectorXd& shape) {
-  if (shape.isZero(0)) return values.squaredNorm();
-  return (values - values.dot(shape) / shape.squaredNorm() * shape).squaredNorm();
-}
-
-// The displacement of a grip since the first of the frames, in the direction of the largest; empty
-// where it does not move along a given path. `direction` becomes that direction.
-Eigen::VectorXd PathAt(const RecordedGrip& grip, const PredictedRecording& item,
-                       Eigen::Vector3d* direction) {
-  if (grip.motion != GripMotion::kGiven) return {};
-  const std::vector<double>& times = item.recording.times;
-  Eigen::Matrix3Xd path(3, static_cast<Eigen::Index>(item.frames.size()));
-  for (size_t k = 0; k < item.frames.size(); ++k)
-    path.col(static_cast<Eigen::Index>(k)) =
-        MotionAt(grip, times[item.frames[k]], times[item.frames.front()]).translation();
-  Eigen::Index farthest = 0;
-  if (!(path.colwise().norm().maxCoeff(&farthest) > 0)) return {};
-  *direction = path.col(farthest).normalized();
-  return path.transpose() * *direction;
-}
-
-// The mean displacement of the points in each frame since the first, along `direction`; NaN where
-// no point is seen.
-Eigen::VectorXd MeanDisplacements(const PredictedRecording& item,
-                                  const Eigen::Vector3d& direction) {
-  const std::vector<Eigen::Matrix3Xd>& positions = item.recording.markers.positions;
-  const Eigen::Matrix3Xd& first = positions[static_cast<size_t>(item.frames.front())];
-  Eigen::VectorXd means(static_cast<Eigen::Index>(item.frames.size()));
-  for (size_t k = 0; k < item.frames.size(); ++k) {
-    const Eigen::RowVectorXd along =
-        direction.transpose() * (positions[static_cast<size_t>(item.frames[k])] - first);
-    double sum = 0, seen = 0;
-    for (const double value : along) {
-      if (std::isnan(value)) continue;
-      sum += value;
-      ++seen;
-    }
-    means[static_cast<Eigen::Index>(k)] = sum / seen;
-  }
-  return means;
-}
-
-}  // namespace
-
-std::string DoubtOfIncrements(const PredictedRecording& item) {
-  constexpr size_t kFewestFrames = 4;
-  // Points that follow the path leave less than the first share of their squares beside it; those
-  // that follow its steps, less than the second share of what is left beside the path.
-  constexpr double kFollows = 0.04, kBetter = 1.0 / 16;
-  const Recording& recording = item.recording;
-  if (item.ShowsScans() || !HasTrackedPoints(recording) || recording.markers.positions.empty() ||
-      item.frames.size() < kFewestFrames)
-    return "";
-  for (const RecordedGrip& grip : recording.object.grips) {
-    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-    const Eigen::VectorXd path = PathAt(grip, item, &direction);
-    if (path.size() == 0) continue;
-    const Eigen::VectorXd moved = MeanDisplacements(item, direction);
-    if (!moved.allFinite() || moved.isZero(0)) continue;
-    Eigen::VectorXd steps = path;
-    steps.tail(path.size() - 1) -= path.head(path.size() - 1);
-    const double beside_path = RemainsBeside(moved, path);
-    if (beside_path > kFollows * moved.squaredNorm() &&
-        RemainsBeside(moved, steps) < kBetter * beside_path)
-      return fmt::format(
-          "{}: the tracked points follow the steps of \"{}\" from frame to frame, not its path: "
-          "are their displacements those since the frame before (incremental correlation)? They "
-          "must be those since the reference state",
-          item.name, grip.region.name);
-  }
-  return "";
 }
 
 }  // namespace lacuna

@@ -1,6 +1,5 @@
 // Whether the first frame of a recording shows the markers where `marker_places` has them on the
-// undeformed object, and if not, which mistake would explain it; and whether tracked points move
-// with the path of a grip.
+// undeformed object, and if not, which mistake would explain it.
 #ifndef LACUNA_PREDICTION_PLACE_DOUBTS_H_
 #define LACUNA_PREDICTION_PLACE_DOUBTS_H_
 
@@ -32,13 +31,6 @@ std::string DoubtOfPlaces(const Eigen::Matrix3Xd& places, const Eigen::Matrix3Xd
 // DoubtOfPlaces() in the first frame that is used of a recording of markers; empty for scans and
 // for tracked points, whose places are those of that frame.
 std::string DoubtOfPlaces(const PredictionStudy& study, const PredictedRecording& item);
-
-// A sentence about tracked points that follow the steps of a grip's given path from frame to frame
-// rather than its displacement since the first frame that is used, as the displacements of an
-// incremental correlation do. Compares the mean displacement of the points along the path with
-// both, by least squares over all frames. Empty if there is no doubt, and for recordings without
-// tracked points or such a grip.
-std::string DoubtOfIncrements(const PredictedRecording& item);
 
 }  // namespace lacuna
 

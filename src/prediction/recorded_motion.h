@@ -19,10 +19,12 @@ std::string RestWarning(const PredictionStudy& study);
 std::vector<std::string> AuxeticWarnings(const PredictionStudy& study);
 // All warnings that a user should see before the computation: RestWarning, the warnings of the
 // recordings, frames that show no marker, markers and tracked points that are elsewhere because of
-// a mistake (place_doubts.h), a part on a given path that has moved before a first frame that is to
+// a mistake (place_doubts.h), an object that moves otherwise than the path of a part of it
+// (driven_motion.h), a part on a given path that has moved before a first frame that is to
 // show the object undeformed, a `fit_until` that holds out no frame, frames so far apart that a
-// motion with inertia takes very many steps between them, a recording under gravity of which the
-// model has none, a negative Poisson's ratio, and settings of scans where no recording is one.
+// motion with inertia takes very many steps between them, states of one object in recordings of
+// their own, a recording under gravity of which the model has none, a negative Poisson's ratio, and
+// settings of scans where no recording is one.
 std::vector<std::string> StudyWarnings(const PredictionStudy& study);
 
 // For markers at rest, the largest mean distance of a marker from its place on the undeformed

@@ -247,11 +247,16 @@ std::vector<std::string> TestedBeside(const DiagnosisRecord& diagnosis, const st
 }
 
 const RecordedNuisance* BestAdoptedNuisance(const DiagnosisRecord& diagnosis) {
-  const RecordedNuisance* most = nullptr;
+  // Errors of the elements and of the object's dimensions both change frequencies and may explain
+  // the same: of those that explain nearly as much as the best one, the first of the catalogue is
+  // meant, which lists the errors of the computation first.
+  constexpr double kNearlyAsMuch = 0.9;
+  double most = 0;
   for (const RecordedNuisance& nuisance : diagnosis.nuisances)
-    if (nuisance.adopted && (most == nullptr || nuisance.explained > most->explained))
-      most = &nuisance;
-  return most;
+    if (nuisance.adopted) most = std::max(most, nuisance.explained);
+  for (const RecordedNuisance& nuisance : diagnosis.nuisances)
+    if (nuisance.adopted && nuisance.explained >= kNearlyAsMuch * most) return &nuisance;
+  return nullptr;
 }
 
 std::string CorrectedError(const DiagnosisRecord& diagnosis) {

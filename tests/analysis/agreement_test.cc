@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -26,7 +27,8 @@ class LinearRecordings {
     }
   }
   // The test of one draw, in which parameter `k` of recording `which` differs by `apart`.
-  AgreementTest Draw(double apart = 0, Eigen::Index k = 0, size_t which = 0) {
+  AgreementTest Draw(double apart = 0, Eigen::Index k = 0, size_t which = 0,
+                     double model_error = 0) {
     const Eigen::VectorXd common = Random(kParameters, 1);
     const Eigen::VectorXd shared = Random(kShared, 1);
     for (size_t i = 0; i < rows_.size(); ++i) {
@@ -37,7 +39,7 @@ class LinearRecordings {
                       0.5 * rows.own * Random(kOwn, 1) - rows.shared * shared;
     }
     return TestAgreement(rows_, std::vector<LinearPrior>(kShared, {0, 1, false}),
-                         Eigen::VectorXd::Ones(kParameters), 1);
+                         Eigen::VectorXd::Ones(kParameters), 1, model_error);
   }
   std::vector<RecordingRows>& rows() { return rows_; }
 
@@ -50,6 +52,21 @@ class LinearRecordings {
   std::normal_distribution<double> normal_;
   std::vector<RecordingRows> rows_;
 };
+
+// The same draw, judged with and without an error of the model.
+TEST(Agreement, LeavesDifferencesToAnErrorOfTheModel) {
+  const auto judged = [](double model_error) {
+    return LinearRecordings(2, 5).Draw(3, 1, 0, model_error);
+  };
+  const AgreementTest exact = judged(0), doubtful = judged(2), hopeless = judged(100);
+  ASSERT_LT(exact.p_value, 0.01);
+  EXPECT_NEAR(std::sqrt(doubtful.chi_square), std::sqrt(exact.chi_square) - 2, 1e-12);
+  EXPECT_GT(doubtful.p_value, exact.p_value);
+  EXPECT_GT(doubtful.p_values[1], exact.p_values[1]);
+  EXPECT_EQ(hopeless.chi_square, 0);
+  EXPECT_EQ(hopeless.p_value, 1);
+  EXPECT_EQ(hopeless.p_values[1], 1);
+}
 
 TEST(Agreement, HasUniformPValuesWhereOnlyChanceDiffers) {
   for (const int count : {2, 3}) {

@@ -161,6 +161,15 @@ TEST(MeshTetrahedra, NotesASurfaceThatIsMuchFinerThanTheLargestVolume) {
   EXPECT_TRUE(fitting.notes.empty()) << fitting.notes[0];
 }
 
+// Twelve triangles make no tetrahedra small.
+TEST(MeshTetrahedra, NotesAThinBody) {
+  const MeshResult thin = MeshTetrahedra(BoxSurface({0.08, 0.022, 0.001}, {1, 1, 1}),
+                                         {.max_volume = 6e-8, .preserve_surface = false});
+  ASSERT_TRUE(thin.IsUsable());
+  ASSERT_EQ(thin.notes.size(), 1u);
+  EXPECT_THAT(thin.notes[0], HasSubstr("because the body is thin"));
+}
+
 TEST(MeshTetrahedra, ASmallerVolumeMakesMoreTetrahedra) {
   const TriMesh box = BoxSurface({0.2, 0.03, 0.04}, {14, 2, 3});
   const auto count = [&](double volume) {

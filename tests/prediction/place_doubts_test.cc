@@ -88,47 +88,5 @@ TEST(DoubtOfPlaces, PassesOverMarkersThatAreNotSeen) {
   EXPECT_EQ(DoubtAbout(measured), "");
 }
 
-// Points of a bar between a support and a jaw, which moves along `path` (m, one place a frame);
-// they move by a half of `moved`.
-PredictedRecording PulledPoints(const std::vector<double>& path, const std::vector<double>& moved) {
-  PredictedRecording item;
-  item.name = "pull";
-  PointFrames points;
-  points.tracked = true;
-  item.recording.frames = points;
-  RecordedGrip jaw;
-  jaw.region.name = "jaw";
-  jaw.motion = GripMotion::kGiven;
-  jaw.times.resize(static_cast<Eigen::Index>(path.size()));
-  jaw.displacements = Eigen::Matrix3Xd::Zero(3, jaw.times.size());
-  for (size_t k = 0; k < path.size(); ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    item.frames.push_back(static_cast<int>(k));
-    item.recording.times.push_back(0.2 * static_cast<double>(k));
-    jaw.times[column] = item.recording.times[k];
-    jaw.displacements(0, column) = path[k];
-    Eigen::Matrix3Xd places = PlacesOnBar();
-    places.row(0).array() += 0.5 * moved[k];
-    places.row(1).array() += 1e-5 * static_cast<double>(k % 3);
-    item.recording.markers.positions.push_back(places);
-  }
-  item.recording.object.grips = {jaw};
-  return item;
-}
-
-TEST(DoubtOfIncrements, IsRaisedByPointsThatFollowTheStepsOfThePath) {
-  const std::vector<double> path{0, 0, 0, 1e-3, 2e-3, 3e-3, 4e-3};
-  EXPECT_EQ(DoubtOfIncrements(PulledPoints(path, path)), "");
-  // A body that yields more and more.
-  EXPECT_EQ(DoubtOfIncrements(PulledPoints(path, {0, 0, 0, 0.5e-3, 1.5e-3, 3e-3, 5e-3})), "");
-  const std::vector<double> steps{0, 0, 0, 1e-3, 1e-3, 1e-3, 1e-3};
-  EXPECT_THAT(DoubtOfIncrements(PulledPoints(path, steps)),
-              AllOf(HasSubstr("pull: "), HasSubstr("the steps of \"jaw\"")));
-  PredictedRecording untracked = PulledPoints(path, steps);
-  untracked.recording.frames = PointFrames();
-  EXPECT_EQ(DoubtOfIncrements(untracked), "");
-  EXPECT_EQ(DoubtOfIncrements(PulledPoints({0, 0, 0, 0, 0, 0, 0}, steps)), "");
-}
-
 }  // namespace
 }  // namespace lacuna
