@@ -1,9 +1,9 @@
 // The written list of all nuisances, and what turns it into columns for one fitted model.
 //
 // There are three kinds: nuisances of the model (mesh, time step, shape, extent of the grips, scale
-// of the loads, differences between the recordings), of each grip, and of each recording (clock, frames). A kind has one signature, so
-// that nuisance_NAME.cc contains a card and one function. All columns refer to the rows of the same
-// LinearisedMisfit, in m per unit amount.
+// of the loads, differences between the recordings), of each grip, and of each recording (clock,
+// frames). A kind has one signature, so that nuisance_NAME.cc contains a card and one function. All
+// columns refer to the rows of the same LinearisedMisfit, in m per unit amount.
 #ifndef LACUNA_DIAGNOSIS_NUISANCE_CATALOGUE_H_
 #define LACUNA_DIAGNOSIS_NUISANCE_CATALOGUE_H_
 
@@ -81,8 +81,8 @@ std::vector<NuisanceTrial> NuisanceControls();
 
 // The nuisances of the model: what a finer mesh and a shorter step change beyond what the
 // parameters can compensate for, the object's dimensions, the noise of the grips' markers, the
-// extent of the grips, the scale of the loads, and parameters that differ between recordings. Those that are in `known`, by the names of their cards, and were simulated,
-// are taken from there.
+// extent of the grips, the scale of the loads, and parameters that differ between recordings. Those
+// that are in `known`, by the names of their cards, and were simulated, are taken from there.
 std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
                                               const std::vector<NuisanceCandidate>& known = {});
 // The nuisance of the model with this name, which must be one; nothing where it does not apply.
