@@ -37,8 +37,8 @@ std::vector<std::string> TestedBeside(const DiagnosisRecord& diagnosis, const st
 // A statement that is at least this probable is more likely true than not.
 inline constexpr double kLikely = 0.5;
 
-// The nuisance of the model that explains most; of several that explain nearly as much, the first in
-// the catalogue. Null: there is none.
+// The nuisance of the model that explains most; of several that explain nearly as much, the first
+// in the catalogue. Null: there is none.
 const RecordedNuisance* BestAdoptedNuisance(const DiagnosisRecord& diagnosis);
 
 // An error beyond the noise that the adopted nuisances explain: "corrected for the size of the

@@ -129,6 +129,17 @@ place_deviation: 0.1 mm
                       (folder_ / "study.yaml").string()));
   }
 
+  // With two refits, on a coarse mesh.
+  Diagnosis FitAndDiagnose(PredictionStudy* study) {
+    const TetMesh mesh = BarMesh({7, 1, 1}, 2);
+    const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, study, &progress_);
+    EXPECT_TRUE(fit.calibration.usable) << fit.calibration.message;
+    const CalibrationProblem problem(*study, mesh);
+    DiagnosisOptions options;
+    options.refits = 2;
+    return Diagnose(problem, fit.calibration.parameters, options, &progress_);
+  }
+
   TemporaryFolder folder_;
   SilentProgress progress_;
 };
@@ -255,13 +266,7 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
   PredictionStudy study =
       Record({MakeEffect("viscoelastic_branch",
                          {{"modulus", 4e4}, {"relaxation_time", 2.5}, {"poisson_ratio", kRatio}})});
-  const TetMesh mesh = BarMesh({7, 1, 1}, 2);
-  const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, &study, &progress_);
-  ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
-  const CalibrationProblem problem(study, mesh);
-  DiagnosisOptions options;
-  options.refits = 2;
-  const Diagnosis diagnosis = Diagnose(problem, fit.calibration.parameters, options, &progress_);
+  const Diagnosis diagnosis = FitAndDiagnose(&study);
   EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << ExplainVerdict(RecordOf(diagnosis));
   EXPECT_THAT(diagnosis.effects, testing::ElementsAre("viscoelastic_branch"));
   for (const RankedEffect& effect : diagnosis.ranking) {
@@ -278,13 +283,7 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
 // explains less than it does, and an effect that is fitted would be taken for it.
 TEST_F(LoadedBar, BendsAsUnderTheLoadThatItReallyBears) {
   PredictionStudy study = Record({}, "", "", /*reading=*/1.4);
-  const TetMesh mesh = BarMesh({7, 1, 1}, 2);
-  const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, &study, &progress_);
-  ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
-  const CalibrationProblem problem(study, mesh);
-  DiagnosisOptions options;
-  options.refits = 2;
-  const Diagnosis diagnosis = Diagnose(problem, fit.calibration.parameters, options, &progress_);
+  const Diagnosis diagnosis = FitAndDiagnose(&study);
   EXPECT_THAT(diagnosis.effects, testing::Contains("load_scale"))
       << ExplainVerdict(RecordOf(diagnosis));
   const auto scale = std::find_if(
