@@ -22,26 +22,20 @@ constexpr double kLeastRatio = 0.005, kLargestRatio = 8;
 constexpr double kOutliers = 0.01;
 constexpr size_t kMostScans = 5;  // that are compared with a path
 
-// The ratio of `moved` to the path, by least squares over the frames in which it was seen; nothing
-// if it is not proportional to the path.
-std::optional<double> RatioTo(const Eigen::VectorXd& path, const Eigen::VectorXd& moved) {
-  double products = 0, of_path = 0, of_moved = 0;
-  for (Eigen::Index k = 0; k < path.size(); ++k) {
-    if (std::isnan(moved[k])) continue;
-    products += moved[k] * path[k];
-    of_path += path[k] * path[k];
-    of_moved += moved[k] * moved[k];
-  }
-  if (!(of_path > 0) || !(of_moved > 0)) return std::nullopt;
-  const double explained = products * products / (of_path * of_moved);
-  if (!(explained > 1 - kProportional)) return std::nullopt;
-  return products / of_path;
-}
-
-// The squares of `values` that are left when the best multiple of `shape` is subtracted.
-double RemainsBeside(const Eigen::VectorXd& values, const Eigen::VectorXd& shape) {
-  if (shape.isZero(0)) return values.squaredNorm();
-  return (values - values.dot(shape) / shape.squaredNorm() * shape).squaredNorm();
+// `values` as a multiple of `shape`, by least squares over the entries of `values` that are not
+// NaN.
+struct Multiple {
+  double factor = 0;             // 0 where the shape is 0
+  double squares = 0, left = 0;  // of the values; after the multiple has been subtracted
+};
+Multiple AsMultiple(const Eigen::VectorXd& values, const Eigen::VectorXd& shape) {
+  std::vector<Eigen::Index> seen;
+  for (Eigen::Index k = 0; k < values.size(); ++k)
+    if (!std::isnan(values[k])) seen.push_back(k);
+  const Eigen::VectorXd own = values(seen), of_shape = shape(seen);
+  const double size = of_shape.squaredNorm();
+  const double factor = size > 0 ? own.dot(of_shape) / size : 0;
+  return {factor, own.squaredNorm(), (own - factor * of_shape).squaredNorm()};
 }
 
 // Those that are compared: all frames of markers, a few of scans.
@@ -95,7 +89,9 @@ Eigen::MatrixXd ObjectMotion(const PredictedRecording& item, const std::vector<i
 // The motion along the largest displacement of a grip; nothing where it rests or turns.
 std::optional<DrivenMotion> MotionWith(const RecordedGrip& grip, const PredictedRecording& item,
                                        const std::vector<int>& frames) {
-  if (grip.motion != GripMotion::kGiven || grip.rotations.cols() > 0) return std::nullopt;
+  if (grip.motion != GripMotion::kGiven || grip.rotations.cols() > 0 ||
+      (!item.ShowsScans() && item.recording.markers.positions.empty()))
+    return std::nullopt;
   const std::vector<double>& times = item.recording.times;
   const auto time = [&](int frame) { return times[static_cast<size_t>(frame)]; };
   Eigen::Matrix3Xd path(3, static_cast<Eigen::Index>(frames.size()));
@@ -113,10 +109,11 @@ std::optional<DrivenMotion> MotionWith(const RecordedGrip& grip, const Predicted
 std::string MistakeInPath(const DrivenMotion& motion) {
   std::optional<double> found;
   for (const auto& moved : motion.object.colwise()) {
-    const std::optional<double> ratio = RatioTo(motion.path, moved);
-    if (!ratio) continue;
-    if (*ratio >= kLeastRatio && *ratio <= kLargestRatio) return "";  // something follows
-    if (!found || std::abs(*ratio) > std::abs(*found)) found = ratio;
+    const Multiple of_path = AsMultiple(moved, motion.path);
+    if (!(of_path.left < kProportional * of_path.squares)) continue;
+    const double ratio = of_path.factor;
+    if (ratio >= kLeastRatio && ratio <= kLargestRatio) return "";  // something follows
+    if (!found || std::abs(ratio) > std::abs(*found)) found = ratio;
   }
   if (!found) return "";
   if (std::abs(*found) < kLeastRatio || std::abs(*found) > kLargestRatio)
@@ -129,8 +126,8 @@ std::string MistakeInPath(const DrivenMotion& motion) {
 
 std::string DoubtOfPaths(const PredictionStudy& study, const PredictedRecording& item) {
   constexpr size_t kFewestFrames = 3;
+  if (study.scheme != TimeScheme::kQuasiStatic || item.frames.size() < kFewestFrames) return "";
   const std::vector<int> frames = ComparedFrames(item);
-  if (study.scheme != TimeScheme::kQuasiStatic || frames.size() < kFewestFrames) return "";
   for (const RecordedGrip& grip : item.recording.object.grips) {
     const std::optional<DrivenMotion> motion = MotionWith(grip, item, frames);
     const std::string mistake = motion ? MistakeInPath(*motion) : "";
@@ -146,20 +143,18 @@ std::string DoubtOfIncrements(const PredictedRecording& item) {
   // Points that follow the path leave less than the first share of their squares beside it; those
   // that follow its steps, less than the second share of what is left beside the path.
   constexpr double kFollows = 0.04, kBetter = 1.0 / 16;
-  const Recording& recording = item.recording;
-  if (item.ShowsScans() || !HasTrackedPoints(recording) || recording.markers.positions.empty() ||
-      item.frames.size() < kFewestFrames)
+  if (item.ShowsScans() || !HasTrackedPoints(item.recording) || item.frames.size() < kFewestFrames)
     return "";
-  for (const RecordedGrip& grip : recording.object.grips) {
+  for (const RecordedGrip& grip : item.recording.object.grips) {
     const std::optional<DrivenMotion> motion = MotionWith(grip, item, item.frames);
     if (!motion) continue;
     const Eigen::VectorXd &path = motion->path, moved = motion->object.col(0);
-    if (!moved.allFinite() || moved.isZero(0)) continue;
+    if (!moved.allFinite()) continue;
     Eigen::VectorXd steps = path;
     steps.tail(path.size() - 1) -= path.head(path.size() - 1);
-    const double beside_path = RemainsBeside(moved, path);
-    if (beside_path > kFollows * moved.squaredNorm() &&
-        RemainsBeside(moved, steps) < kBetter * beside_path)
+    const Multiple of_path = AsMultiple(moved, path);
+    if (of_path.left > kFollows * of_path.squares &&
+        AsMultiple(moved, steps).left < kBetter * of_path.left)
       return fmt::format(
           "{}: the tracked points follow the steps of \"{}\" from frame to frame, not its path: "
           "are their displacements those since the frame before (incremental correlation)? They "

@@ -11,7 +11,7 @@
 namespace lacuna {
 
 // How far the object has moved along a direction since the first frame, m, in the frames in which
-// a part has moved by `path` along it. NaN where nothing is seen.
+// a part has moved by `path` along it. NaN where nothing was seen.
 struct DrivenMotion {
   Eigen::VectorXd path;
   // One column for what may follow the part: of markers their mean, of scans both ends of the

@@ -27,8 +27,11 @@ TEST(CalibrationProblem, TellsWhatItCannotWorkWith) {
   // At rest, 2 mm from where the undeformed bar has the markers.
   const Eigen::Matrix3Xd moved = BarMarkerPlaces().array() + 0.002;
   WriteBarRecording(folder.Path(), std::vector<Eigen::Matrix3Xd>(kFrames, moved));
-  EXPECT_THAT(MessageOf(ReadBarStudy(folder.Path(), {{"noise: 0.05 mm\n", ""}})),
-              testing::HasSubstr("noise: cannot be estimated (no marker is seen"));
+  EXPECT_THAT(
+      MessageOf(ReadBarStudy(folder.Path(), {{"noise: 0.05 mm\n", ""}})),
+      testing::HasSubstr("noise: cannot be estimated (no marker is seen in three frames that "
+                         "follow one another, or their values contain no noise: the "
+                         "markers do not move at all, or along a straight line)"));
   const std::string hold =
       "    hold:\n      region: {half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}\n"
       "      release: 0.0437 s\n";
