@@ -3,6 +3,8 @@
 #include <glog/logging.h>
 
 #include <Eigen/Cholesky>
+#include <iterator>
+#include <numeric>
 
 #include "analysis/series_noise.h"
 
@@ -22,31 +24,50 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<double>&
   return Whitened(rows, layout, {errors.noise, 0, errors.common});
 }
 
+CommonErrors::CommonErrors(Eigen::Index components, Eigen::Index places)
+    : components_(components),
+      information_(static_cast<size_t>(places), Eigen::MatrixXd::Identity(components, components)),
+      toward_(Eigen::MatrixXd::Zero(components, places)) {}
+
+void CommonErrors::Add(const Eigen::VectorXd& residual, const std::vector<double>& count,
+                       const MeasurementErrors& errors, const std::vector<char>& among,
+                       const std::vector<Eigen::Matrix3d>& deformation,
+                       const std::vector<int>& place_of_point) {
+  const size_t points = place_of_point.size();
+  CHECK_EQ(count.size(), among.size() * points);
+  CHECK_EQ(residual.size(), components_ * std::ssize(count));
+  const double ratio = errors.common / errors.noise;
+  for (size_t at = 0; at < count.size(); ++at) {
+    if (!among[at / points] || count[at] == 0) continue;
+    const int place = place_of_point[at % points];
+    Eigen::MatrixXd shows = Eigen::MatrixXd::Identity(components_, components_);
+    if (!deformation.empty()) shows = deformation[at];
+    const double weight = count[at] * ratio * ratio;
+    information_[static_cast<size_t>(place)] += weight * shows.transpose() * shows;
+    toward_.col(place) +=
+        weight * shows.transpose() *
+        residual.segment(components_ * static_cast<Eigen::Index>(at), components_);
+  }
+}
+
+Eigen::MatrixXd CommonErrors::Mean() const {
+  Eigen::MatrixXd mean(components_, toward_.cols());
+  for (Eigen::Index place = 0; place < mean.cols(); ++place)
+    mean.col(place) = information_[static_cast<size_t>(place)].llt().solve(toward_.col(place));
+  return mean;
+}
+
 Eigen::MatrixXd CommonError(const Eigen::VectorXd& residual, const std::vector<double>& count,
                             int points, const MeasurementErrors& errors,
                             const std::vector<char>& among,
                             const std::vector<Eigen::Matrix3d>& deformation) {
-  CHECK_EQ(count.size(), among.size() * points);
+  CHECK_EQ(count.size(), among.size() * static_cast<size_t>(points));
   if (count.empty()) return Eigen::MatrixXd::Zero(1, points);
-  const Eigen::Index components = residual.size() / static_cast<Eigen::Index>(count.size());
-  const double ratio = errors.common / errors.noise;
-  Eigen::MatrixXd common(components, points);
-  for (int point = 0; point < points; ++point) {
-    Eigen::MatrixXd information = Eigen::MatrixXd::Identity(components, components);
-    Eigen::VectorXd toward = Eigen::VectorXd::Zero(components);
-    for (size_t f = 0; f < among.size(); ++f) {
-      const size_t at = f * static_cast<size_t>(points) + static_cast<size_t>(point);
-      if (!among[f] || count[at] == 0) continue;
-      Eigen::MatrixXd shows = Eigen::MatrixXd::Identity(components, components);
-      if (!deformation.empty()) shows = deformation[at];
-      const double weight = count[at] * ratio * ratio;
-      information += weight * shows.transpose() * shows;
-      toward += weight * shows.transpose() *
-                residual.segment(components * static_cast<Eigen::Index>(at), components);
-    }
-    common.col(point) = information.llt().solve(toward);
-  }
-  return common;
+  std::vector<int> places(static_cast<size_t>(points));
+  std::iota(places.begin(), places.end(), 0);
+  CommonErrors common(residual.size() / std::ssize(count), points);
+  common.Add(residual, count, errors, among, deformation, places);
+  return common.Mean();
 }
 
 }  // namespace lacuna

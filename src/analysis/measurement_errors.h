@@ -27,8 +27,26 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<double>&
                          const MeasurementErrors& errors,
                          const std::vector<Eigen::Matrix3d>& deformation = {});
 
-// The posterior mean of the common part of the errors given the residual of the frames `among` (one
-// flag per frame): components × points, m, on the undeformed object.
+// The posterior mean of the common part of the errors of `places`, from the residuals of the
+// recordings that show them.
+class CommonErrors {
+ public:
+  CommonErrors(Eigen::Index components, Eigen::Index places);
+
+  // Adds the frames `among` (one flag per frame) of a recording, whose points are at these places.
+  void Add(const Eigen::VectorXd& residual, const std::vector<double>& count,
+           const MeasurementErrors& errors, const std::vector<char>& among,
+           const std::vector<Eigen::Matrix3d>& deformation, const std::vector<int>& place_of_point);
+  // Components × places, m, on the undeformed object; 0 where nothing was seen.
+  Eigen::MatrixXd Mean() const;
+
+ private:
+  Eigen::Index components_;
+  std::vector<Eigen::MatrixXd> information_;  // of each place, in units of 1/s²
+  Eigen::MatrixXd toward_;                    // components × places, m
+};
+
+// The same from one recording of `points` points.
 Eigen::MatrixXd CommonError(const Eigen::VectorXd& residual, const std::vector<double>& count,
                             int points, const MeasurementErrors& errors,
                             const std::vector<char>& among,

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "core/median.h"
@@ -41,54 +42,108 @@ Eigen::MatrixXd Uncorrelated(const Eigen::MatrixXd& values, const std::vector<do
   return white;
 }
 
+// The series of one recording that have an offset in common.
+struct OffsetMember {
+  const NoisyRecording* recording;
+  int first_series;
+
+  Eigen::Index FrameCount() const {
+    return static_cast<Eigen::Index>(recording->layout->times.size());
+  }
+};
+
+// The series that share each offset, in the order of the rows.
+std::vector<std::vector<OffsetMember>> MembersOfOffsets(
+    const std::vector<NoisyRecording>& recordings) {
+  std::vector<std::vector<OffsetMember>> offsets;
+  std::map<int, size_t> known;  // from the number of an offset to its place in `offsets`
+  for (const NoisyRecording& recording : recordings) {
+    const SeriesLayout& layout = *recording.layout;
+    const int width = layout.SeriesPerOffset();
+    CHECK_EQ(layout.series % width, 0);
+    CHECK(layout.offset_ids.empty() || std::ssize(layout.offset_ids) == layout.series / width);
+    for (int first = 0; first < layout.series; first += width) {
+      size_t at = offsets.size();
+      if (!layout.offset_ids.empty())
+        at = known.try_emplace(layout.offset_ids[static_cast<size_t>(first / width)], at)
+                 .first->second;
+      if (at == offsets.size()) offsets.emplace_back();
+      offsets[at].push_back({&recording, first});
+    }
+  }
+  return offsets;
+}
+
+// Whitens the series that share one offset, of `rows` into `white`.
+void WhitenTogether(const std::vector<OffsetMember>& members, const Eigen::MatrixXd& rows,
+                    Eigen::MatrixXd* white) {
+  const int width = members.front().recording->layout->SeriesPerOffset();
+  Eigen::Index height = 0;
+  for (const OffsetMember& member : members) height += width * member.FrameCount();
+  Eigen::MatrixXd block(height, rows.cols());  // recordings outermost, then coordinates
+  Eigen::MatrixXd common(height, width);       // response to an offset of one deviation
+  const auto rows_of = [](const OffsetMember& member, int c) {
+    return Eigen::seqN(member.recording->first_row + member.first_series + c, member.FrameCount(),
+                       member.recording->layout->series);
+  };
+  Eigen::Index next = 0;
+  for (const OffsetMember& member : members) {
+    const SeriesLayout& layout = *member.recording->layout;
+    const SeriesNoise& noise = member.recording->noise;
+    const std::vector<char>* frames = member.recording->frames;
+    CHECK_EQ(layout.SeriesPerOffset(), width);
+    const Eigen::Index frame_count = member.FrameCount();
+    for (int c = 0; c < width; ++c, next += frame_count) {
+      std::vector<double> count(layout.times.size());
+      Eigen::MatrixXd own(frame_count, width);
+      for (Eigen::Index f = 0; f < frame_count; ++f) {
+        const bool is_chosen = frames == nullptr || frames->empty() || (*frames)[f];
+        count[f] = is_chosen ? layout.count[f * layout.series + member.first_series + c] : 0;
+        if (width == 1)
+          own(f, 0) = 1;
+        else
+          own.row(f) = layout.deformation[(f * layout.series + member.first_series) / width].row(c);
+      }
+      own *= noise.offset_deviation / noise.deviation;
+      block.middleRows(next, frame_count) =
+          Uncorrelated(rows(rows_of(member, c), Eigen::all) / noise.deviation, layout.times, count,
+                       noise.correlation_time);
+      common.middleRows(next, frame_count) =
+          Uncorrelated(own, layout.times, count, noise.correlation_time);
+    }
+  }
+  // (I + U Uᵀ)^(−1/2) reduces the components along the left singular vectors of U.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(common.transpose() * common);
+  const Eigen::MatrixXd along = common * eigen.eigenvectors();
+  for (int k = 0; k < width; ++k) {
+    const double square = eigen.eigenvalues()[k];
+    if (!(square > 0)) continue;  // no offset, or not observed
+    const double share = (1 - 1 / std::sqrt(1 + square)) / square;
+    block -= along.col(k) * (share * (along.col(k).transpose() * block));
+  }
+  next = 0;
+  for (const OffsetMember& member : members)
+    for (int c = 0; c < width; ++c, next += member.FrameCount())
+      (*white)(rows_of(member, c), Eigen::all) = block.middleRows(next, member.FrameCount());
+}
+
 }  // namespace
 
 Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const SeriesLayout& layout,
                          const SeriesNoise& noise, const std::vector<char>& frames) {
   CHECK_EQ(rows.rows(), layout.Rows());
-  CHECK_GT(noise.deviation, 0);
-  const Eigen::Index frame_count = static_cast<Eigen::Index>(layout.times.size());
-  const double ratio = noise.offset_deviation / noise.deviation;
-  // Number of series with a joint offset: three coordinates that deform together, or one.
-  const int width = layout.deformation.empty() ? 1 : 3;
-  CHECK_EQ(layout.series % width, 0);
-  Eigen::MatrixXd white(rows.rows(), rows.cols());
-  Eigen::MatrixXd block(width * frame_count, rows.cols());  // coordinates outermost
-  Eigen::MatrixXd common(width * frame_count, width);       // response to a unit offset
-  for (int first = 0; first < layout.series; first += width) {
-    for (int c = 0; c < width; ++c) {
-      const int s = first + c;
-      std::vector<double> count(layout.times.size());
-      Eigen::MatrixXd own(frame_count, width);
-      for (Eigen::Index f = 0; f < frame_count; ++f) {
-        const bool is_chosen = frames.empty() || frames[f];
-        count[f] = is_chosen ? layout.count[f * layout.series + s] : 0;
-        if (width == 1)
-          own(f, 0) = 1;
-        else
-          own.row(f) = layout.deformation[(f * layout.series + first) / width].row(c);
-      }
-      const auto series = rows(Eigen::seqN(s, frame_count, layout.series), Eigen::all);
-      block.middleRows(c * frame_count, frame_count) =
-          Uncorrelated(series / noise.deviation, layout.times, count, noise.correlation_time);
-      common.middleRows(c * frame_count, frame_count) =
-          Uncorrelated(own, layout.times, count, noise.correlation_time);
-    }
-    if (ratio > 0) {
-      // (I + ratio² U Uᵀ)^(−1/2) reduces the components along the left singular vectors of U.
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(common.transpose() * common);
-      const Eigen::MatrixXd along = common * eigen.eigenvectors();
-      for (int k = 0; k < width; ++k) {
-        const double square = eigen.eigenvalues()[k];
-        if (!(square > 0)) continue;  // not observed
-        const double share = (1 - 1 / std::sqrt(1 + square * ratio * ratio)) / square;
-        block -= along.col(k) * (share * (along.col(k).transpose() * block));
-      }
-    }
-    for (int c = 0; c < width; ++c)
-      white(Eigen::seqN(first + c, frame_count, layout.series), Eigen::all) =
-          block.middleRows(c * frame_count, frame_count);
+  return Whitened(rows, {{0, &layout, noise, &frames}});
+}
+
+Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows,
+                         const std::vector<NoisyRecording>& recordings) {
+  for (const NoisyRecording& recording : recordings) {
+    CHECK_LE(recording.first_row + recording.layout->Rows(), rows.rows());
+    CHECK_GT(recording.noise.deviation, 0);
   }
+  Eigen::MatrixXd white = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());
+  for (const std::vector<OffsetMember>& members : MembersOfOffsets(recordings))
+    WhitenTogether(members, rows, &white);
   return white;
 }
 

@@ -6,7 +6,9 @@
 // second part is an offset common to all frames, since the position of a marker on the object is
 // known only to within s. The offset moves with the material: if the deformation gradient F_t at
 // the marker is given, the three coordinates have the covariance s² F_t F_uᵀ between the frames t
-// and u. A value that is the mean of n measurements has σ/√n in place of σ.
+// and u. A marker that several recordings show has one offset in all of them, so that t and u may
+// be frames of different recordings. A value that is the mean of n measurements has σ/√n in place
+// of σ.
 //
 // The rows of a recording are ordered by frame, with all series of a frame together.
 #ifndef LACUNA_ANALYSIS_SERIES_NOISE_H_
@@ -25,10 +27,16 @@ struct SeriesLayout {
   // (series/3) × frames: F at the point whose coordinates are three consecutive series. Empty: the
   // offset is constant and the series are independent.
   std::vector<Eigen::Matrix3d> deformation;
+  // For each offset, that of a point with `deformation` or of a series without, a number: equal
+  // numbers in several recordings stand for the same offset. Empty: the offsets belong to this
+  // recording alone.
+  std::vector<int> offset_ids = {};
 
   Eigen::Index Rows() const {
     return static_cast<Eigen::Index>(series) * static_cast<Eigen::Index>(times.size());
   }
+  // Series that share an offset: three coordinates that deform together, or one.
+  int SeriesPerOffset() const { return deformation.empty() ? 1 : 3; }
 };
 
 struct SeriesNoise {
@@ -43,6 +51,20 @@ struct SeriesNoise {
 // 0.
 Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const SeriesLayout& layout,
                          const SeriesNoise& noise, const std::vector<char>& frames = {});
+
+// One of several recordings whose rows are whitened together. The layout and the frames must
+// outlive it.
+struct NoisyRecording {
+  Eigen::Index first_row = 0;
+  const SeriesLayout* layout = nullptr;
+  SeriesNoise noise;
+  const std::vector<char>* frames = nullptr;  // as above; null: all
+};
+// The same for the rows of several recordings, which share the offsets with equal `offset_ids`.
+// Rows of no recording become 0. CHECKs that series with a common offset deform alike, i.e. all of
+// them with a deformation gradient or none.
+Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows,
+                         const std::vector<NoisyRecording>& recordings);
 
 // The temporal correlation of residuals that were whitened under the assumption τ = 0.
 struct SeriesStatistics {

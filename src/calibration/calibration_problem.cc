@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/linear_misfit.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
@@ -15,10 +16,6 @@
 
 namespace lacuna {
 namespace {
-
-// A frame is lost where the share of its points with a correspondence is less than this fraction of
-// the share in the best frame.
-constexpr double kFewestMatched = 0.5;
 
 std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& parameters,
                                           const EffectList& effects) {
@@ -39,47 +36,6 @@ Eigen::MatrixXd SumOverPlaces(const std::vector<ModelParameter>& parameters,
     for (size_t place = 0; place < parameters[k].places.size(); ++place)
       sum.col(static_cast<Eigen::Index>(k)) += by.col(column++);
   return sum;
-}
-
-// The reason why the correspondences of a scan cannot be used; empty where they can.
-std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
-  const size_t lost = model.LostFrames(misfit, kFewestMatched).size();
-  if (2 * lost <= misfit.frames.size()) {
-    if (!model.recording().ShowsScans() || misfit.observed.empty()) return "";
-    const Observed& first = misfit.observed.front();
-    if (model.Shows(first)) return "";
-    return fmt::format(
-        "frame {} shows {} of {} patches of the predicted surface: the length unit of its points, "
-        "their transform or their normals are wrong, or it shows too little of the object",
-        misfit.frames.front(), (first.count.array() > 0).count(), misfit.points);
-  }
-  return fmt::format(
-      "in {} of {} frames most scanned points are farther than scan.reach from the predicted "
-      "surface: start nearer to the solution, increase scan.reach, or crop the scans to the object",
-      lost, misfit.frames.size());
-}
-
-// The rows of `more` appended to those of `all`.
-void AppendRows(const Eigen::MatrixXd& more, Eigen::MatrixXd* all) {
-  const Eigen::Index rows = all->rows();
-  all->conservativeResize(rows + more.rows(), more.cols());
-  all->bottomRows(more.rows()) = more;
-}
-
-// Appends whitened rows to a prediction. `series`: rows of one frame. `count`: for each point (or
-// each component of a reaction) in each frame, 0 where it was not observed.
-void AppendWhitened(const Eigen::MatrixXd& residual, const Eigen::MatrixXd& jacobian,
-                    Eigen::Index series, const std::vector<double>& count,
-                    ResidualEvaluation* prediction) {
-  const Eigen::Index first = prediction->residual.size();
-  if (!count.empty())
-    prediction->unobserved += residual.rows() / static_cast<Eigen::Index>(count.size()) *
-                              std::count(count.begin(), count.end(), 0);
-  prediction->residual.conservativeResize(first + residual.rows());
-  prediction->residual.tail(residual.rows()) = residual.col(0);
-  AppendRows(jacobian, &prediction->jacobian);
-  for (Eigen::Index row = 0; row < residual.rows(); ++row)
-    prediction->before.push_back(row < series ? -1 : first + row - series);
 }
 
 // The reason why the noise of markers cannot be estimated from the fitted frames.
@@ -125,6 +81,7 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
     double& largest = item.ShowsScans() ? of_scans : of_markers;
     largest = std::max(largest, EstimateRecordingNoise(item, item.FittedFrames()));
   }
+  NumberPlaces();
   for (CalibratedParameter& parameter : parameters_)
     if (std::isnan(parameter.prior_mean)) parameter.prior_mean = parameter.start;
   estimates_noise_ = !has_scans && (noise_ == 0 || study.noise_is_estimated);
@@ -140,6 +97,19 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
         "{}: scan.noise: cannot be estimated (no scan is fitted, or its points lie on planes); "
         "give it",
         study.file.string()));
+  }
+}
+
+void CalibrationProblem::NumberPlaces() {
+  for (size_t r = 0; r < models_.size(); ++r) {
+    std::vector<int>& ids = place_ids_.emplace_back();
+    if (models_[r].recording().ShowsScans()) continue;
+    for (size_t other = 0; other < r && ids.empty(); ++other)
+      if (const auto same = SameMarkers(models_[r].recording(), models_[other].recording()))
+        for (const int marker : *same)
+          ids.push_back(place_ids_[other][static_cast<size_t>(marker)]);
+    if (!ids.empty()) continue;
+    for (int marker = 0; marker < models_[r].PointCount(); ++marker) ids.push_back(place_count_++);
   }
 }
 
@@ -184,34 +154,34 @@ Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
                                PlacesFromFitted(recording, values));
 }
 
-std::optional<size_t> CalibrationProblem::RecordingWithSamePlaces(size_t recording) const {
-  if (models_[recording].recording().ShowsScans() || first_nuisance_[recording] >= 0)
-    return std::nullopt;
-  for (size_t r = 0; r < models_.size(); ++r)
-    if (first_nuisance_[r] >= 0 &&
-        SameMarkers(models_[recording].recording(), models_[r].recording()))
-      return r;
-  return std::nullopt;
+bool CalibrationProblem::ShareMarkers(size_t a, size_t b) const {
+  // All markers are the same, or none.
+  return !place_ids_[a].empty() &&
+         std::count(place_ids_[b].begin(), place_ids_[b].end(), place_ids_[a].front()) > 0;
 }
 
-Eigen::MatrixXd CalibrationProblem::InOrderOf(size_t recording, size_t source,
-                                              const Eigen::MatrixXd& places) const {
-  const auto same = SameMarkers(models_[recording].recording(), models_[source].recording());
-  CHECK(same);
-  return places(Eigen::all, *same);
+void CalibrationProblem::AddTo(CommonErrors* places, size_t recording, const Misfit& misfit) const {
+  std::vector<char> fitted;
+  for (const int frame : misfit.frames)
+    fitted.push_back(models_[recording].recording().IsFitted(frame));
+  places->Add(misfit.residual, misfit.count, ErrorsOf(models_[recording]), fitted,
+              misfit.deformation, place_ids_[recording]);
 }
 
 std::optional<Eigen::MatrixXd> CalibrationProblem::PlacesFromFitted(
     size_t recording, const Eigen::VectorXd& values) const {
-  const std::optional<size_t> source = RecordingWithSamePlaces(recording);
-  if (!source) return std::nullopt;
-  const RecordingModel fitted = ModelAt(*source, values);
-  const Misfit misfit =
-      fitted.Predict(fitted.recording().FittedFrames(), NuisanceOf(*source, values));
-  if (!misfit.summary.IsUsable()) return std::nullopt;
-  return InOrderOf(recording, *source,
-                   CommonError(misfit.residual, misfit.count, misfit.points, ErrorsOf(fitted),
-                               std::vector<char>(misfit.frames.size(), 1), misfit.deformation));
+  CommonErrors places = PlaceErrors();
+  bool is_told = false;
+  for (const size_t r : FittedRecordings()) {
+    if (!ShareMarkers(recording, r)) continue;
+    const RecordingModel fitted = ModelAt(r, values);
+    const Misfit misfit = fitted.Predict(fitted.recording().FittedFrames(), NuisanceOf(r, values));
+    if (!misfit.summary.IsUsable()) continue;
+    AddTo(&places, r, misfit);
+    is_told = true;
+  }
+  if (!is_told) return std::nullopt;
+  return places.Mean()(Eigen::all, place_ids_[recording]);
 }
 
 std::vector<MisfitDirection> CalibrationProblem::DirectionsFor(
@@ -243,93 +213,38 @@ std::vector<size_t> CalibrationProblem::FittedRecordings() const {
   return fitted;
 }
 
-ResidualEvaluation CalibrationProblem::PredictRecording(size_t recording,
-                                                        const Eigen::VectorXd& values,
-                                                        bool with_jacobian, double horizon,
-                                                        const PredictionHints& hints,
-                                                        Misfit* misfit) const {
-  const RecordingModel model = ModelAt(recording, values);
-  std::vector<int> frames = model.recording().FittedFrames();
-  const double start = model.recording().StartTime();
-  std::erase_if(frames, [&](int frame) { return model.FrameTime(frame) > start + horizon; });
-  std::vector<MisfitDirection> directions;
-  if (with_jacobian) directions = DirectionsFor(model, {});
-  *misfit = model.Predict(frames, NuisanceOf(recording, values), directions, hints);
-  ResidualEvaluation part;
-  if (!misfit->summary.IsUsable())
-    part.message = misfit->summary.message;
-  else if (hints.reach_factor <= 1)
-    part.message = Mismatch(model, *misfit);
-  part.usable = part.message.empty();
-  if (!part.usable) {
-    part.message = model.recording().name + ": " + part.message;
-    return part;
-  }
-  const auto columns = [&](const Eigen::MatrixXd& by) {
-    return with_jacobian ? ColumnsOf(recording, by, 0) : Eigen::MatrixXd(by.rows(), 0);
-  };
-  const auto whitened = [&](const Eigen::MatrixXd& what) {
-    return Whitened(what, misfit->count, model.PointCount(), ErrorsOf(model), misfit->deformation);
-  };
-  AppendWhitened(whitened(misfit->residual), whitened(columns(misfit->jacobian)),
-                 model.observer().Components() * model.PointCount(), misfit->count, &part);
-  for (size_t k = 0; k < misfit->reactions.size(); ++k) {
-    const ReactionMisfit& reaction = misfit->reactions[k];
-    const auto whitened_force = [&](const Eigen::MatrixXd& what) {
-      return Whitened(what, reaction.count, reaction.components,
-                      ReadingErrors(model.Reactions()[k]));
-    };
-    AppendWhitened(whitened_force(reaction.residual), whitened_force(columns(reaction.jacobian)),
-                   reaction.components, reaction.count, &part);
-  }
-  return part;
-}
-
 ResidualEvaluation CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
                                                double horizon, FitMemory* memory) const {
   ThrowIfInterrupted();
   FitMemory nothing;
   FitMemory& known = memory != nullptr ? *memory : nothing;
   const bool seek = known.correspondences.empty();
-  if (seek) known.correspondences.resize(models_.size());
   known.equilibria.resize(models_.size());
-  const std::vector<Eigen::VectorXd> equilibria_before = known.equilibria;
   const std::vector<size_t> fitted = FittedRecordings();
-  std::vector<ResidualEvaluation> parts(fitted.size());
+  std::vector<PredictedRows> recordings(fitted.size());
   ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t k) {
     const size_t r = fitted[static_cast<size_t>(k)];
-    Misfit misfit;
-    parts[static_cast<size_t>(k)] = PredictRecording(
-        r, values, with_jacobian, horizon,
+    const PredictedRecording& item = models_[r].recording();
+    PredictedFrames early{
+        r,
+        item.FittedFrames(),
         {seek ? nullptr : &known.correspondences[r], &known.equilibria[r], known.reach_factor},
-        &misfit);
-    if (misfit.summary.held.size() > 0) known.equilibria[r] = misfit.summary.held;
-    if (seek) known.correspondences[r] = std::move(misfit.observed);
+        /*needs_matches=*/known.reach_factor <= 1};
+    std::erase_if(early.frames, [&](int frame) {
+      return models_[r].FrameTime(frame) > item.StartTime() + horizon;
+    });
+    recordings[static_cast<size_t>(k)] = RowsOf(early, values, {.with_jacobian = with_jacobian});
   });
-  ResidualEvaluation all;
-  Eigen::Index rows = 0;
-  for (const ResidualEvaluation& part : parts) {
-    if (!part.usable) {
-      // The result of the next prediction must not depend on one that has failed.
-      known.equilibria = equilibria_before;
-      if (seek) known.correspondences.clear();
-      return part;
-    }
-    rows += part.residual.size();
+  LinearisedMisfit all = Joined(std::move(recordings));
+  // The result of the next prediction must not depend on one that has failed.
+  if (!all.usable) return {false, all.message, {}, {}};
+  if (seek) known.correspondences.resize(models_.size());
+  for (LinearisedMisfit::Part& part : all.parts) {
+    if (!part.IsOfPoints()) continue;
+    if (part.held.size() > 0) known.equilibria[part.recording] = std::move(part.held);
+    if (seek) known.correspondences[part.recording] = std::move(part.observed);
   }
-  all.usable = true;
-  all.residual.resize(rows);
-  if (with_jacobian) all.jacobian.resize(rows, static_cast<Eigen::Index>(parameters_.size()));
-  Eigen::Index row = 0;
-  for (const ResidualEvaluation& part : parts) {
-    all.residual.segment(row, part.residual.size()) = part.residual;
-    if (with_jacobian) all.jacobian.middleRows(row, part.residual.size()) = part.jacobian;
-    for (const Eigen::Index before : part.before)
-      all.before.push_back(before < 0 ? before : row + before);
-    all.unobserved += part.unobserved;
-    row += part.residual.size();
-  }
-  return all;
+  return FittedFrames(all);
 }
 
 std::optional<CalibrationProblem::ScanDistance> CalibrationProblem::DistanceOfScans(

@@ -113,14 +113,14 @@ class CalibrationProblem {
   // The nuisance parameters of a recording. Those of a fitted recording are among `values`; those
   // of another one are fitted to its first tenth, with the model at `values`.
   Eigen::VectorXd NuisanceOf(size_t recording, const Eigen::VectorXd& values) const;
-  // The fitted recording from which the errors of the marker places of a recording that is not
-  // fitted are taken: the first one with markers of the same names at the same places, in any
-  // order. The markers sit on the object, so that their place errors are the same in both. Empty
-  // where there is none, and for scans.
-  std::optional<size_t> RecordingWithSamePlaces(size_t recording) const;
-  // The errors of the marker places of `source`, RecordingWithSamePlaces(), 3 × markers, in the
-  // order in which `recording` has these markers.
-  Eigen::MatrixXd InOrderOf(size_t recording, size_t source, const Eigen::MatrixXd& places) const;
+  // The numbers of the places of a recording's markers. Markers of several recordings with the same
+  // names and places, in any order, sit at the same places of the object and have the same numbers,
+  // so that the errors of these places are the same in all of them. Empty for scans.
+  const std::vector<int>& PlaceIds(size_t recording) const { return place_ids_[recording]; }
+  bool ShareMarkers(size_t a, size_t b) const;
+  // Estimates the errors of the markers' places from fitted recordings.
+  CommonErrors PlaceErrors() const { return {3, place_count_}; }
+  void AddTo(CommonErrors* places, size_t recording, const Misfit& misfit) const;
 
   // What the predictions of a fit reuse from earlier ones.
   struct FitMemory {
@@ -162,7 +162,8 @@ class CalibrationProblem {
                              const LineariseOptions& options = {}) const;
 
  private:
-  // The errors of the marker places, 3 × markers, m, estimated from RecordingWithSamePlaces().
+  // The errors of the marker places of a recording that is not fitted, 3 × markers, m, as the
+  // fitted recordings of the same markers tell them; empty where there are none.
   std::optional<Eigen::MatrixXd> PlacesFromFitted(size_t recording,
                                                   const Eigen::VectorXd& values) const;
   // The directions in which a recording's Misfit is differentiated: each place of the study's
@@ -173,21 +174,24 @@ class CalibrationProblem {
   Eigen::MatrixXd ColumnsOf(size_t recording, const Eigen::Ref<const Eigen::MatrixXd>& by,
                             Eigen::Index further) const;
 
+  void NumberPlaces();
   std::vector<size_t> FittedRecordings() const;
-  // The results of Predict() and Linearise() for one recording; recordings are predicted side by
-  // side. `misfit` receives the misfit that the prediction was made from.
-  ResidualEvaluation PredictRecording(size_t recording, const Eigen::VectorXd& values,
-                                      bool with_jacobian, double horizon,
-                                      const PredictionHints& hints, Misfit* misfit) const;
-  struct LinearisedRecording {
+  // The rows of one recording; recordings are predicted side by side, and joined.
+  struct PredictedFrames {
+    size_t recording = 0;
+    std::vector<int> frames;
+    PredictionHints hints = {};
+    bool needs_matches = false;  // not usable where most points of a scan have no correspondence
+  };
+  struct PredictedRows {
     std::string message;  // the reason why it is not usable; empty where it is
     std::vector<LinearisedMisfit::Part> parts;  // first_row counts from that of the recording
     Eigen::VectorXd residual;
     Eigen::MatrixXd jacobian;
   };
-  LinearisedRecording LineariseRecording(size_t recording, const Eigen::VectorXd& values,
-                                         const LineariseOptions& options,
-                                         const PredictionHints& hints) const;
+  PredictedRows RowsOf(const PredictedFrames& predicted, const Eigen::VectorXd& values,
+                       const LineariseOptions& options) const;
+  static LinearisedMisfit Joined(std::vector<PredictedRows> recordings);
 
   const PredictionStudy& study_;
   std::shared_ptr<const Body> body_;
@@ -196,6 +200,8 @@ class CalibrationProblem {
   std::vector<CalibratedParameter> parameters_;
   std::vector<std::string> units_;            // SI units of the parameters
   std::vector<Eigen::Index> first_nuisance_;  // −1 for a recording that is not fitted
+  std::vector<std::vector<int>> place_ids_;   // PlaceIds() of each recording
+  int place_count_ = 0;                       // the number of different places
   double noise_ = 0, scan_noise_ = 0;
   bool estimates_noise_ = false;  // whether noise_ was estimated; false where there are scans
 };

@@ -27,7 +27,7 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage, or its files.
-constexpr int kCalibrationVersion = 36;
+constexpr int kCalibrationVersion = 37;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.

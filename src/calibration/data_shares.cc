@@ -12,7 +12,7 @@ std::vector<std::optional<DataShares>> SharesOfData(const CalibrationProblem& pr
   const LinearisedMisfit misfit =
       problem.Linearise(values, {.with_jacobian = true, .on_frame = on_frame});
   if (!misfit.usable) return {};
-  // The parts are whitened independently of one another, so that the squares of each are its own.
+  // The kinds are whitened independently of one another, so that the squares of each are its own.
   const Eigen::MatrixXd squares =
       WhitenedRows(misfit.jacobian, misfit, {.fitted_only = true}).cwiseAbs2();
   const Eigen::RowVectorXd all = squares.colwise().sum();

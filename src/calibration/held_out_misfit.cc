@@ -69,38 +69,45 @@ std::optional<Misfit> KnownMisfit(const RecordingModel& model, size_t recording,
   return found;
 }
 
-// `places` are the offsets of the markers, where another recording has determined them.
-RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorXd& values, size_t r,
-                         const std::optional<Eigen::MatrixXd>& places,
-                         const LinearisedMisfit* known, const std::function<void()>& on_frame) {
+// The nuisances and the misfit of a recording. `places`: the errors of its markers' places, where
+// other recordings have told them.
+RecordingMisfit PredictMisfit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                              size_t r, const std::optional<Eigen::MatrixXd>& places,
+                              const LinearisedMisfit* known,
+                              const std::function<void()>& on_frame) {
   const RecordingModel model = problem.ModelAt(r, values);
   const PredictedRecording& item = model.recording();
-  const MeasurementErrors errors = problem.ErrorsOf(model);
   RecordingMisfit recording;
   recording.name = item.name;
-  recording.nuisance =
-      item.fitted ? problem.NuisanceOf(r, values) : FitRecordingNuisances(model, errors, places);
+  recording.nuisance = item.fitted ? problem.NuisanceOf(r, values)
+                                   : FitRecordingNuisances(model, problem.ErrorsOf(model), places);
   std::optional<Misfit> predicted = KnownMisfit(model, r, known);
   recording.misfit = predicted ? *std::move(predicted)
                                : model.Predict(item.frames, recording.nuisance, {}, {}, on_frame);
-  const std::vector<char> tells_places = TellsPlaces(item, recording.misfit.frames);
-  std::vector<double> times;
-  for (const int frame : recording.misfit.frames) {
-    times.push_back(item.recording.times[frame]);
-    recording.fitted.push_back(item.IsFitted(frame));
-  }
-  recording.has_own_places = !places;
-  recording.place_offset = places ? *places
-                                  : CommonError(recording.misfit.residual, recording.misfit.count,
-                                                recording.misfit.points, errors, tells_places,
-                                                recording.misfit.deformation);
-  for (size_t k = 0; k < recording.misfit.reactions.size(); ++k)
-    recording.reactions.push_back(
-        MeasureReaction(model.Reactions()[k], recording.misfit.reactions[k], times,
-                        recording.fitted, tells_places, !item.recording.object.forces.empty()));
-  recording.in_fit = Measure(recording, true, errors.noise);
-  recording.held_out = Measure(recording, false, errors.noise);
+  for (const int frame : recording.misfit.frames) recording.fitted.push_back(item.IsFitted(frame));
   return recording;
+}
+
+// Measures the errors of a recording, without those of the places of its points. `places`: as
+// above; none where the recording tells them itself.
+void MeasureErrors(const CalibrationProblem& problem, size_t r,
+                   const std::optional<Eigen::MatrixXd>& places, RecordingMisfit* recording) {
+  const RecordingModel& model = problem.models()[r];
+  const PredictedRecording& item = model.recording();
+  const Misfit& misfit = recording->misfit;
+  const MeasurementErrors errors = problem.ErrorsOf(model);
+  const std::vector<char> tells_places = TellsPlaces(item, misfit.frames);
+  recording->place_offset = places ? *places
+                                   : CommonError(misfit.residual, misfit.count, misfit.points,
+                                                 errors, tells_places, misfit.deformation);
+  std::vector<double> times;
+  for (const int frame : misfit.frames) times.push_back(item.recording.times[frame]);
+  for (size_t k = 0; k < misfit.reactions.size(); ++k)
+    recording->reactions.push_back(MeasureReaction(model.Reactions()[k], misfit.reactions[k], times,
+                                                   recording->fitted, tells_places,
+                                                   !item.recording.object.forces.empty()));
+  recording->in_fit = Measure(*recording, true, errors.noise);
+  recording->held_out = Measure(*recording, false, errors.noise);
 }
 
 }  // namespace
@@ -116,21 +123,39 @@ std::vector<char> TellsPlaces(const PredictedRecording& item, const std::vector<
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values, const LinearisedMisfit* known,
                                        const std::function<void()>& on_frame) {
-  std::vector<RecordingMisfit> all(problem.models().size());
-  // Recordings that determine the places come before those that take them over.
-  for (const bool is_told : {false, true}) {
-    std::vector<size_t> some;
-    for (size_t r = 0; r < all.size(); ++r)
-      if (problem.RecordingWithSamePlaces(r).has_value() == is_told) some.push_back(r);
-    ParallelFor(static_cast<int64_t>(some.size()), 1, [&](int64_t k) {
-      const size_t r = some[static_cast<size_t>(k)];
-      std::optional<Eigen::MatrixXd> places;
-      if (const std::optional<size_t> source = problem.RecordingWithSamePlaces(r);
-          source && all[*source].misfit.summary.IsUsable())
-        places = problem.InOrderOf(r, *source, all[*source].place_offset);
-      all[r] = MisfitOf(problem, values, r, places, known, on_frame);
-    });
+  const size_t count = problem.models().size();
+  std::vector<RecordingMisfit> all(count);
+  std::vector<size_t> tellers, others;
+  for (size_t r = 0; r < count; ++r)
+    (problem.models()[r].recording().fitted ? tellers : others).push_back(r);
+  const auto for_each = [](const std::vector<size_t>& some,
+                           const std::function<void(size_t)>& what) {
+    ParallelFor(static_cast<int64_t>(some.size()), 1,
+                [&](int64_t k) { what(some[static_cast<size_t>(k)]); });
+  };
+  for_each(tellers, [&](size_t r) {
+    all[r] = PredictMisfit(problem, values, r, std::nullopt, known, on_frame);
+  });
+  // Fitted recordings tell where the markers are, all of them together.
+  CommonErrors told = problem.PlaceErrors();
+  std::vector<char> is_told(count);
+  for (const size_t r : tellers) {
+    if (problem.PlaceIds(r).empty() || !all[r].misfit.summary.IsUsable()) continue;
+    problem.AddTo(&told, r, all[r].misfit);
+    all[r].has_own_places = !is_told[r];
+    for (size_t other = 0; other < count; ++other)
+      is_told[other] = is_told[other] || problem.ShareMarkers(other, r);
   }
+  const Eigen::MatrixXd of_places = told.Mean();
+  const auto places = [&](size_t r) -> std::optional<Eigen::MatrixXd> {
+    if (!is_told[r]) return std::nullopt;
+    return of_places(Eigen::all, problem.PlaceIds(r));
+  };
+  for_each(others, [&](size_t r) {
+    all[r] = PredictMisfit(problem, values, r, places(r), known, on_frame);
+    all[r].has_own_places = !is_told[r];
+  });
+  for (size_t r = 0; r < count; ++r) MeasureErrors(problem, r, places(r), &all[r]);
   return all;
 }
 

@@ -21,7 +21,7 @@ struct RecordingMisfit {
   Eigen::VectorXd nuisance;        // in the order of RecordingModel::nuisances
   std::vector<char> fitted;        // for each frame of the misfit
   Eigen::MatrixXd place_offset;    // components × points, m: the errors of the points' places
-  bool has_own_places = true;      // false: the offsets are taken from a fitted recording
+  bool has_own_places = true;      // false: an earlier recording has the same markers
   MisfitMeasure in_fit, held_out;  // held out: later frames, or the whole recording
   std::vector<FittedReaction> reactions;  // one per reading of RecordingModel::Reactions()
 };
@@ -30,9 +30,9 @@ struct RecordingMisfit {
 // object. A recording that is not fitted does so only in the frames before its motion.
 std::vector<char> TellsPlaces(const PredictedRecording& item, const std::vector<int>& frames);
 
-// The misfits of all recordings at these values of the problem's parameters. For a recording that
-// is not fitted, the nuisances and the places are those of CalibrationProblem::NuisanceOf and
-// RecordingWithSamePlaces.
+// The misfits of all recordings at these values of the problem's parameters. Where the markers are
+// on the object, all fitted recordings of these markers tell together, also for a recording that is
+// not fitted, whose nuisances are those of CalibrationProblem::NuisanceOf.
 // `known`, if given: the misfit of the problem at `values`, from which the predictions of fitted
 // recordings with markers are taken. `on_frame`, unless it is empty, is called by several threads
 // at once whenever a frame of a misfit has been predicted.

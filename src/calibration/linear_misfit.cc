@@ -6,7 +6,6 @@
 #include "analysis/series_noise.h"
 
 namespace lacuna {
-
 std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& parameters,
                                      const Eigen::VectorXd& values) {
   std::vector<LinearPrior> priors;
@@ -36,15 +35,50 @@ Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
 
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
                              const WhiteningOptions& options) {
-  Eigen::MatrixXd white(rows.rows(), rows.cols());
+  std::vector<NoisyRecording> recordings;
+  for (const LinearisedMisfit::Part& part : misfit.parts)
+    recordings.push_back({part.first_row,
+                          &part.layout,
+                          {part.errors.noise, options.correlation_time, part.errors.common},
+                          options.fitted_only ? &part.fitted : nullptr});
+  return Whitened(rows, recordings);
+}
+
+Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit) {
+  Eigen::MatrixXd kept(rows.rows(), rows.cols());
+  Eigen::Index count = 0;
   for (const LinearisedMisfit::Part& part : misfit.parts) {
-    const Eigen::Index count = part.layout.Rows();
-    white.middleRows(part.first_row, count) =
-        Whitened(rows.middleRows(part.first_row, count), part.layout,
-                 {part.errors.noise, options.correlation_time, part.errors.common},
-                 options.fitted_only ? part.fitted : std::vector<char>{});
+    for (size_t f = 0; f < part.fitted.size(); ++f) {
+      if (!part.fitted[f]) continue;
+      const Eigen::Index first = part.first_row + static_cast<Eigen::Index>(f) * part.layout.series;
+      kept.middleRows(count, part.layout.series) = rows.middleRows(first, part.layout.series);
+      count += part.layout.series;
+    }
   }
-  return white;
+  kept.conservativeResize(count, Eigen::NoChange);
+  return kept;
+}
+
+ResidualEvaluation FittedFrames(const LinearisedMisfit& misfit) {
+  ResidualEvaluation prediction;
+  prediction.usable = misfit.usable;
+  prediction.message = misfit.message;
+  if (!misfit.usable) return prediction;
+  prediction.residual =
+      FittedRows(WhitenedRows(misfit.residual, misfit, {.fitted_only = true}), misfit);
+  prediction.jacobian =
+      FittedRows(WhitenedRows(misfit.jacobian, misfit, {.fitted_only = true}), misfit);
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    const Eigen::Index first = static_cast<Eigen::Index>(prediction.before.size());
+    const Eigen::Index series = part.layout.series;
+    const Eigen::Index rows = series * std::count(part.fitted.begin(), part.fitted.end(), 1);
+    for (Eigen::Index row = 0; row < rows; ++row)
+      prediction.before.push_back(row < series ? -1 : first + row - series);
+    for (Eigen::Index row = 0; row < part.layout.Rows(); ++row)
+      prediction.unobserved += part.fitted[static_cast<size_t>(row / series)] &&
+                               part.layout.count[static_cast<size_t>(row)] == 0;
+  }
+  return prediction;
 }
 
 NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,

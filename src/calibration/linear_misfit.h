@@ -28,9 +28,15 @@ struct WhiteningOptions {
   bool fitted_only = false;     // whether rows of frames that were not fitted become 0
 };
 
-// Rows of a linearised misfit, whitened with the measurement errors of their recording.
+// Rows of a linearised misfit, whitened with the measurement errors of their recordings. The error
+// of a marker's place is common to the recordings that show the marker.
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
                              const WhiteningOptions& options = {});
+
+// The rows of the fitted frames, in the order of `rows`.
+Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit);
+// What a fit sees of a misfit: the whitened rows of its fitted frames.
+ResidualEvaluation FittedFrames(const LinearisedMisfit& misfit);
 
 // The noise level with which hypotheses are compared.
 struct NoiseLevel {

@@ -59,7 +59,8 @@ bool WhitenedHypotheses::WhitensLike(const LinearisedMisfit& misfit) const {
         return a.first_row == b.first_row && a.errors.noise == b.errors.noise &&
                a.errors.common == b.errors.common && a.layout.series == b.layout.series &&
                a.layout.times == b.layout.times && a.layout.count == b.layout.count &&
-               a.layout.deformation == b.layout.deformation;
+               a.layout.deformation == b.layout.deformation &&
+               a.layout.offset_ids == b.layout.offset_ids;
       });
 }
 

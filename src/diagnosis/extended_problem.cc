@@ -38,45 +38,6 @@ constexpr int kHoldIterations = 8;  // the result only is the start of the next 
 constexpr double kCoveredShare = 0.75;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The rows of fitted frames, in the order of CalibrationProblem::Predict.
-Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit) {
-  Eigen::MatrixXd kept(rows.rows(), rows.cols());
-  Eigen::Index count = 0;
-  for (const LinearisedMisfit::Part& part : misfit.parts) {
-    for (size_t f = 0; f < part.fitted.size(); ++f) {
-      if (!part.fitted[f]) continue;
-      const Eigen::Index first = part.first_row + static_cast<Eigen::Index>(f) * part.layout.series;
-      kept.middleRows(count, part.layout.series) = rows.middleRows(first, part.layout.series);
-      count += part.layout.series;
-    }
-  }
-  kept.conservativeResize(count, Eigen::NoChange);
-  return kept;
-}
-
-// The prediction of a fit, of the fitted frames.
-ResidualEvaluation FittedPart(const LinearisedMisfit& misfit) {
-  ResidualEvaluation prediction;
-  prediction.usable = misfit.usable;
-  prediction.message = misfit.message;
-  if (!misfit.usable) return prediction;
-  prediction.residual =
-      FittedRows(WhitenedRows(misfit.residual, misfit, {.fitted_only = true}), misfit);
-  prediction.jacobian =
-      FittedRows(WhitenedRows(misfit.jacobian, misfit, {.fitted_only = true}), misfit);
-  for (const LinearisedMisfit::Part& part : misfit.parts) {
-    const Eigen::Index first = static_cast<Eigen::Index>(prediction.before.size());
-    const Eigen::Index series = part.layout.series;
-    const Eigen::Index rows = series * std::count(part.fitted.begin(), part.fitted.end(), 1);
-    for (Eigen::Index row = 0; row < rows; ++row)
-      prediction.before.push_back(row < series ? -1 : first + row - series);
-    for (Eigen::Index row = 0; row < part.layout.Rows(); ++row)
-      prediction.unobserved += part.fitted[static_cast<size_t>(row / series)] &&
-                               part.layout.count[static_cast<size_t>(row)] == 0;
-  }
-  return prediction;
-}
-
 // The null value of a parameter that makes the effect's size; nothing for another parameter.
 std::optional<double> NullOf(const ScoredVariant& scored, const ModelParameter& parameter) {
   const int index = parameter.places.front().index;
@@ -242,7 +203,7 @@ FitStart ExtendedProblem::StartAtFixedSize(const std::string& stage) const {
 
 FirstStep ExtendedProblem::FirstStepFrom(const Eigen::VectorXd& at,
                                          const LinearisedMisfit& misfit) const {
-  const ResidualEvaluation there = FittedPart(misfit);
+  const ResidualEvaluation there = FittedFrames(misfit);
   const std::vector<CalibratedParameter> parameters = ParametersFrom(at, /*holds_effect=*/false);
   Eigen::MatrixXd columns = nuisances_.OfDerivatives(there.jacobian.leftCols(at.size()));
   DeriveByFreeValues(parameters, at, &columns);
@@ -332,7 +293,7 @@ ResidualEvaluation ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with
     // The last such prediction becomes the fit's misfit.
     memory->latest = with_.Linearise(at, {.with_jacobian = true, .near = &baseline_.misfit});
     memory->of_latest = at;
-    prediction = FittedPart(memory->latest);
+    prediction = FittedFrames(memory->latest);
   } else {
     memory->of_problem.correspondences.clear();  // each prediction finds its own
     prediction = with_.Predict(at, with_jacobian, kInfinity, &memory->of_problem);

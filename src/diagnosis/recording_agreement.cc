@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -13,12 +13,9 @@ namespace {
 
 // Whether the markers of another fitted recording sit where those of `r` do.
 bool SharesMarkers(const CalibrationProblem& problem, size_t r) {
-  const std::vector<RecordingModel>& models = problem.models();
-  if (models[r].recording().ShowsScans() || models[r].PointCount() > kMostSharedMarkers)
-    return false;
-  for (size_t other = 0; other < models.size(); ++other)
-    if (other != r && models[other].recording().fitted &&
-        SameMarkers(models[r].recording(), models[other].recording()))
+  if (problem.models()[r].PointCount() > kMostSharedMarkers) return false;
+  for (size_t other = 0; other < problem.models().size(); ++other)
+    if (other != r && problem.models()[other].recording().fitted && problem.ShareMarkers(r, other))
       return true;
   return false;
 }
@@ -32,40 +29,23 @@ struct PlaceErrors {
 
 PlaceErrors ErrorsOfPlaces(const CalibrationProblem& problem, LinearisedMisfit* misfit) {
   PlaceErrors errors;
-  std::vector<std::pair<size_t, Eigen::Index>> groups;  // a recording of each, its first column
+  std::map<int, Eigen::Index> first_column;  // of each place
   errors.columns.resize(misfit->residual.size(), 0);
   for (LinearisedMisfit::Part& part : misfit->parts) {
     if (!part.IsOfPoints() || part.errors.common == 0 || !SharesMarkers(problem, part.recording))
       continue;
-    const Eigen::Index components = part.layout.series;
-    Eigen::Index first = -1;
-    // For each marker its number in the recording whose markers the columns follow.
-    std::vector<int> order(static_cast<size_t>(components / 3));
-    std::iota(order.begin(), order.end(), 0);
-    for (const auto& [recording, column] : groups) {
-      const auto same = SameMarkers(problem.models()[part.recording].recording(),
-                                    problem.models()[recording].recording());
-      if (!same) continue;
-      first = column;
-      order = *same;
+    const std::vector<int>& places = problem.PlaceIds(part.recording);
+    for (const int place : places) {
+      if (!first_column.try_emplace(place, errors.columns.cols()).second) continue;
+      errors.columns.conservativeResize(Eigen::NoChange, errors.columns.cols() + 3);
+      errors.columns.rightCols<3>().setZero();
+      errors.priors.insert(errors.priors.end(), 3, {0, part.errors.common, false});
     }
-    if (first < 0) {
-      first = errors.columns.cols();
-      groups.emplace_back(part.recording, first);
-      errors.columns.conservativeResize(Eigen::NoChange, first + components);
-      errors.columns.rightCols(components).setZero();
-      errors.priors.insert(errors.priors.end(), static_cast<size_t>(components),
-                           {0, part.errors.common, false});
-    }
-    for (size_t frame = 0; frame < part.layout.times.size(); ++frame) {
-      for (Eigen::Index point = 0; point < components / 3; ++point) {
-        const size_t at = frame * static_cast<size_t>(components / 3) + static_cast<size_t>(point);
-        if (part.layout.count[3 * at] == 0) continue;
-        const Eigen::Index row = part.first_row + 3 * static_cast<Eigen::Index>(at);
-        errors.columns.block<3, 3>(row, first + 3 * order[static_cast<size_t>(point)]) =
-            part.layout.deformation.empty() ? Eigen::Matrix3d::Identity()
-                                            : part.layout.deformation[at];
-      }
+    for (size_t at = 0; at < part.layout.deformation.size(); ++at) {
+      if (part.layout.count[3 * at] == 0) continue;
+      const Eigen::Index row = part.first_row + 3 * static_cast<Eigen::Index>(at);
+      errors.columns.block<3, 3>(row, first_column.at(places[at % places.size()])) =
+          part.layout.deformation[at];
     }
     part.errors.common = 0;
   }
@@ -110,6 +90,7 @@ AgreementRecord CompareRecordings(const CalibrationProblem& problem, const Eigen
   LinearisedMisfit independent;  // whose points have errors of their places of their own, if any
   independent.residual = misfit.residual;
   independent.parts = misfit.parts;
+  for (LinearisedMisfit::Part& part : independent.parts) part.layout.offset_ids.clear();
   const PlaceErrors places = ErrorsOfPlaces(problem, &independent);
   const auto whiten = [&](const Eigen::MatrixXd& rows) {
     return WhitenedRows(rows, independent,

@@ -148,27 +148,6 @@ std::string EarlyPathWarning(const PredictedRecording& item) {
   return "";
 }
 
-// Slow recordings of the same markers in so few frames each that the errors of the markers' places,
-// which every recording estimates for itself, may hide what the model misses.
-std::string SeparateStatesWarning(const PredictionStudy& study) {
-  constexpr size_t kFewFrames = 2;
-  if (study.scheme != TimeScheme::kQuasiStatic) return "";
-  std::vector<std::string> separate;
-  const PredictedRecording* first = nullptr;
-  for (const PredictedRecording& item : study.recordings) {
-    if (!item.fitted || item.ShowsScans() || item.FittedFrames().size() > kFewFrames) continue;
-    if (first == nullptr) first = &item;
-    if (&item == first || SameMarkers(*first, item)) separate.push_back(item.name);
-  }
-  if (separate.size() < 2) return "";
-  return fmt::format(
-      "{} show the same markers in one or two frames each. The errors of the markers' places are "
-      "estimated from each recording by itself, so that they may hide a part of what the model "
-      "misses. Where one clamping served all of them, put them into one recording, as frames with "
-      "a table of the loads",
-      FirstFew(separate));
-}
-
 std::string UnseenWarning(const PredictedRecording& item) {
   if (item.ShowsScans()) return "";
   const auto is_unseen = [&](int frame) {
@@ -229,7 +208,6 @@ std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
     add(SlownessWarning(item, study));
     add(GravityWarning(item, study));
   }
-  add(SeparateStatesWarning(study));
   add(ScanSettingsWarning(study));
   for (const std::string& warning : ImplausibleValues(study)) add(warning);
   for (const std::string& warning : AuxeticWarnings(study)) add(warning);

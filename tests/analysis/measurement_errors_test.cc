@@ -92,6 +92,38 @@ TEST(CommonError, IsTheMeanOfItsPosterior) {
   }
 }
 
+// Two recordings tell together what one with all of their frames would.
+TEST(CommonErrors, AreThoseOfAllRecordings) {
+  constexpr int kFrames = 5;
+  std::srand(3);
+  std::vector<Eigen::Matrix3d> deformation;
+  for (int k = 0; k < 2 * kFrames; ++k)
+    deformation.push_back(Eigen::Matrix3d::Identity() + 0.5 * Eigen::Matrix3d::Random());
+  const Eigen::VectorXd residual = Eigen::VectorXd::Random(6 * kFrames);
+  std::vector<double> count(2 * kFrames, 1);
+  count[3] = 0;
+  const MeasurementErrors errors{0.3, 0.7};
+  const std::vector<char> all(kFrames, 1);
+  const Eigen::MatrixXd one = CommonError(residual, count, 2, errors, all, deformation);
+
+  CommonErrors together(3, 4);  // of places, two of which nobody sees
+  together.Add(residual.head(12), {count.begin(), count.begin() + 4}, errors, {1, 1},
+               {deformation.begin(), deformation.begin() + 4}, {3, 1});
+  // The other frames, with the points in the opposite order.
+  Eigen::VectorXd rest = residual.tail(18);
+  std::vector<Eigen::Matrix3d> of_rest(deformation.begin() + 4, deformation.end());
+  for (size_t frame = 0; frame < 3; ++frame) {
+    std::swap(of_rest[2 * frame], of_rest[2 * frame + 1]);
+    const Eigen::Index row = 6 * static_cast<Eigen::Index>(frame);
+    rest.segment<3>(row).swap(rest.segment<3>(row + 3));
+  }
+  together.Add(rest, std::vector<double>(6, 1), errors, {1, 1, 1}, of_rest, {1, 3});
+  const Eigen::MatrixXd mean = together.Mean();
+  EXPECT_LT((mean.col(3) - one.col(0)).norm(), 1e-14);  // rounding
+  EXPECT_LT((mean.col(1) - one.col(1)).norm(), 1e-14);
+  EXPECT_EQ(mean.col(0).norm() + mean.col(2).norm(), 0);
+}
+
 // A marker that lies δ off shows it turned with the object; then δ is found again.
 TEST(CommonError, IsOnTheUndeformedObject) {
   constexpr int kFrames = 40;

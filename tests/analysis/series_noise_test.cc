@@ -4,7 +4,9 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <map>
 #include <random>
+#include <vector>
 
 namespace lacuna {
 namespace {
@@ -64,6 +66,62 @@ TEST(SeriesNoise, WhitensOffsetsThatMoveWithTheObject) {
   still.deformation.clear();
   const Eigen::MatrixXd rows = Eigen::MatrixXd::Random(24, 3);
   EXPECT_LT((Whitened(rows, layout, noise) - Whitened(rows, still, noise)).norm(), 1e-12);
+}
+
+// A marker that two recordings show, in another order, has the same offset in both.
+TEST(SeriesNoise, WhitensOffsetsThatRecordingsShare) {
+  std::srand(2);
+  const auto deformed = [](size_t frames) {
+    std::vector<Eigen::Matrix3d> deformation;
+    for (size_t k = 0; k < 2 * frames; ++k)
+      deformation.push_back(Eigen::Matrix3d::Identity() + 0.8 * Eigen::Matrix3d::Random());
+    return deformation;
+  };
+  SeriesLayout first{6, {0, 0.1, 0.4}, std::vector<double>(18, 1), deformed(3), {0, 1}};
+  first.count[7] = first.count[6] = first.count[8] = 0;  // the first point in frame 1
+  const SeriesLayout second{6, {0, 0.2}, std::vector<double>(12, 1), deformed(2), {1, 5}};
+  const SeriesLayout force{1, {0, 0.1, 0.4}, {1, 1, 1}, {}};
+  const SeriesNoise noise{0.3, 0.2, 0.7}, of_force{2, 0, 3};
+  // The rows of the second recording come first, then one that belongs to neither.
+  const std::vector<NoisyRecording> all = {
+      {13, &first, noise}, {0, &second, noise}, {31, &force, of_force}};
+  const Eigen::MatrixXd W = Whitened(Eigen::MatrixXd::Identity(34, 34), all);
+
+  struct Row {
+    int recording, point, component;
+    double time;
+    Eigen::RowVector3d shows;
+  };
+  std::map<int, Row> rows;  // those that were observed
+  for (int k = 0; k < 30; ++k) {
+    const bool is_first = k < 18;
+    const SeriesLayout& layout = is_first ? first : second;
+    const int at = is_first ? k : k - 18;
+    if (layout.count[at] == 0) continue;
+    rows[is_first ? 13 + at : at] = {is_first, layout.offset_ids[at / 3 % 2], at % 3,
+                                     layout.times[at / 6], layout.deformation[at / 3].row(at % 3)};
+  }
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(34, 34), expected = covariance;
+  for (const auto& [i, a] : rows) {
+    expected(i, i) = 1;
+    for (const auto& [j, b] : rows) {
+      if (a.point != b.point) continue;
+      covariance(i, j) = 0.49 * a.shows.dot(b.shows);
+      if (a.recording == b.recording && a.component == b.component)
+        covariance(i, j) += 0.09 * std::exp(-std::abs(a.time - b.time) / 0.2);
+    }
+  }
+  covariance.bottomRightCorner<3, 3>().setConstant(9);
+  covariance.bottomRightCorner<3, 3>().diagonal().array() += 4;
+  expected.bottomRightCorner<3, 3>().setIdentity();
+  EXPECT_LT((W * covariance * W.transpose() - expected).norm(), 1e-12);  // rounding
+
+  // A recording whose offsets are its own is whitened as if it were alone.
+  SeriesLayout apart = second;
+  apart.offset_ids = {};
+  const Eigen::MatrixXd two = Eigen::MatrixXd::Random(30, 2);
+  const Eigen::MatrixXd white = Whitened(two, {{0, &first, noise}, {18, &apart, noise}});
+  EXPECT_EQ(white.bottomRows(12), Whitened(Eigen::MatrixXd(two.bottomRows(12)), apart, noise));
 }
 
 TEST(SeriesNoise, TreatsExcludedFramesAsAbsent) {

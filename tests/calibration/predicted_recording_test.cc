@@ -1,5 +1,6 @@
 // Recordings and frames that are only predicted: a fit does not use them, but they use what it has
 // found.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,6 +66,31 @@ void ReverseMarkers(const std::filesystem::path& folder) {
   for (size_t m = table.size() / 3; m > 0; --m)
     reversed.insert(reversed.end(), {table[3 * m - 2], table[3 * m - 1], table[3 * m]});
   WriteCsv(reversed, folder / "markers.csv");
+}
+
+// The errors of the markers' places are common to recordings: two with the same residuals r tell
+// as much as one whose noise is smaller by √2, since
+//   [r; r]ᵀ (σ² 1 + s² u uᵀ)⁻¹ [r; r] = rᵀ (σ²/2 1 + s² v vᵀ)⁻¹ r,   u = [v; v].
+TEST(CalibrationProblem, SharesThePlacesOfMarkersBetweenRecordings) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  WriteBarRecording(folder / "other", FilmHeldBar({}));
+  ReverseMarkers(folder / "other");
+  const auto squares = [&](const std::string& place, const std::string& noise, bool is_twofold) {
+    std::map<std::string, std::string> changes;
+    if (is_twofold) changes = WithOtherRecording(fmt::format("    fit_until: {} s\n", kFitUntil));
+    changes["place_deviation: 0.2 mm"] = "place_deviation: " + place;
+    changes["noise: 0.05 mm"] = "noise: " + noise;
+    const PredictionStudy study = ReadBarStudy(folder.Path(), changes);
+    const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 2));
+    const ResidualEvaluation prediction = problem.Predict(problem.Start(), false);
+    EXPECT_TRUE(prediction.usable) << prediction.message;
+    return prediction.residual.squaredNorm();
+  };
+  const double together = squares("1 mm", "0.1 mm", true);
+  EXPECT_NEAR(together, squares("1 mm", "0.070710678118654752 mm", false), 1e-9 * together);
+  // Places that are known leave all of the residuals, and wide priors take most of the rest.
+  EXPECT_GT(squares("0 mm", "0.1 mm", true), 1.01 * together);
 }
 
 // Where a marker is on the object, a fitted recording tells for one that is not fitted.

@@ -93,22 +93,6 @@ TEST_F(ReadingAPredictionStudy, TellsOfASlowRecording) {
   EXPECT_THAT(StudyWarnings(study), ElementsAre());
 }
 
-TEST_F(ReadingAPredictionStudy, TellsOfStatesInRecordingsOfTheirOwn) {
-  PredictionStudy study = ReadBarStudy(folder_.Path());
-  study.scheme = TimeScheme::kQuasiStatic;
-  study.recordings[0].frames = {3};
-  study.recordings[0].name = "20 g";
-  study.recordings.push_back(study.recordings[0]);
-  study.recordings[1].name = "50 g";
-  const auto hint = HasSubstr("20 g, 50 g show the same markers in one or two frames each");
-  EXPECT_THAT(StudyWarnings(study), testing::Contains(hint));
-  study.recordings[1].recording.markers.places.array() += 1e-3;  // others
-  EXPECT_THAT(StudyWarnings(study), testing::Not(testing::Contains(hint)));
-  study.recordings[1] = study.recordings[0];
-  study.recordings[1].frames = {3, 4, 5};
-  EXPECT_THAT(StudyWarnings(study), testing::Not(testing::Contains(hint)));
-}
-
 TEST_F(ReadingAPredictionStudy, TellsOfGravityThatTheModelLacks) {
   PredictionStudy study = ReadBarStudy(folder_.Path());
   ASSERT_THAT(StudyWarnings(study), ElementsAre());
