@@ -27,8 +27,11 @@ struct EffectWithFurther {
   // What a further hypothesis that has this evidence beside the effect gains beyond what may be
   // error of the model.
   double GainOf(double second) const { return second - tested.space->model_error - model_error; }
-  // The evidence of this effect together with a further one. Either of the two may be found first.
-  double With(double second) const { return alone.evidence + GainOf(second) + std::log(2.0); }
+  // The evidence of this effect together with the effect `name`. Either of two different ones may
+  // be found first.
+  double With(const std::string& name, double second) const {
+    return alone.evidence + GainOf(second) + (name == Name() ? 0 : std::log(2.0));
+  }
 };
 
 // The effects of the posterior that may be the first of a combination: those that were refitted,
@@ -82,6 +85,12 @@ bool IsElasticityLaw(const std::string& effect) {
   return entry != nullptr && entry->kind == CatalogueEntry::Kind::kMaterial;
 }
 
+// Whether a model may contain the effect twice, e.g. at two places or with two relaxation times.
+bool IsRepeatable(const std::string& effect) {
+  const CatalogueEntry* entry = FindEntry(effect);
+  return entry != nullptr && entry->card->repeatable;
+}
+
 const WeighedPair* FindPair(const DecisionInput& input, const std::string& a,
                             const std::string& b) {
   for (const WeighedPair& pair : input.pairs)
@@ -89,11 +98,13 @@ const WeighedPair* FindPair(const DecisionInput& input, const std::string& a,
   return nullptr;
 }
 
-// Whether two effects may be missing together: a model has one elasticity law, and a pair that
-// could not be fitted, or that the held-out frames have refuted, is not weighed to first order
-// again.
+// Whether two effects, or one effect twice, may be missing together: a model has one elasticity
+// law, and a pair that could not be fitted, or that the held-out frames have refuted, is not
+// weighed to first order again.
 bool MayBeBoth(const DecisionInput& input, const std::string& a, const std::string& b) {
-  if (a == b || (IsElasticityLaw(a) && IsElasticityLaw(b)) || HasFailed(input, a, b)) return false;
+  if ((a == b && !IsRepeatable(a)) || (IsElasticityLaw(a) && IsElasticityLaw(b)) ||
+      HasFailed(input, a, b))
+    return false;
   const WeighedPair* fitted = FindPair(input, a, b);
   return fitted == nullptr || fitted->predicts;
 }
@@ -121,8 +132,8 @@ std::vector<Combination> FittedPairs(const DecisionInput& input,
     const EffectWithFurther* first = FindFirst(effects, refit.first);
     const EffectWithFurther* second = FindFirst(effects, refit.second);
     if (first == nullptr) continue;
-    double evidence =
-        first->With(refit.gain - std::log(static_cast<double>(input.families.size())));
+    double evidence = first->With(
+        refit.second, refit.gain - std::log(static_cast<double>(input.families.size())));
     if (second != nullptr) evidence -= std::max(0.0, second->model_error - first->model_error);
     pairs.push_back(
         Combine(input, Kind::kPair, refit.first, refit.second, evidence, {&refit.space, {}}));
@@ -144,14 +155,15 @@ void AddPairsToFirstOrder(const DecisionInput& input, const std::vector<EffectWi
     const NamedEvidence* second = BestFurther(input, first);
     if (second == nullptr) continue;
     if (std::any_of(pairs->begin(), pairs->end(), [&](const Combination& other) {
-          return other.hypothesis.Contains(name) && other.hypothesis.Contains(second->name);
+          return IsSamePair(other.hypothesis.names[0], other.hypothesis.names[1], name,
+                            second->name);
         }))
       continue;
-    double evidence = first.With(second->evidence);
+    double evidence = first.With(second->name, second->evidence);
     if (const EffectWithFurther* other = FindFirst(effects, second->name))
       for (const NamedEvidence& named : other->further)
         if (named.kind == HypothesisKind::kEffect && named.name == name)
-          evidence = std::min(evidence, other->With(named.evidence));
+          evidence = std::min(evidence, other->With(name, named.evidence));
     pairs->push_back(
         Combine(input, Kind::kPair, name, second->name, evidence, TestedBeside(first, *second)));
   }
@@ -174,8 +186,8 @@ std::vector<Combination> WithNuisances(const DecisionInput& input,
       const double gain = first.GainOf(named.evidence);
       const double evidence = first.alone.evidence + gain + std::log(kPriorNuisances);
       const bool is_behind =
-          rival != nullptr &&
-          evidence + std::log(kPriorEffects) < first.With(rival->evidence) + std::log(kPriorPairs);
+          rival != nullptr && evidence + std::log(kPriorEffects) <
+                                  first.With(rival->name, rival->evidence) + std::log(kPriorPairs);
       if (!(gain > 0) || is_behind) continue;
       combinations.push_back(Combine(input, Kind::kEffect, first.Name(), named.name, evidence,
                                      TestedBeside(first, named)));

@@ -1,12 +1,13 @@
-// Hypotheses of two causes: two effects, or an effect and a nuisance beside it.
+// Hypotheses of two causes: two effects, one effect twice (at two places, or with two relaxation
+// times), or an effect and a nuisance beside it.
 //
 // Let A be an effect, R(A) its evidence, and e(B | A) that of a further hypothesis B beside the
 // refit with A. The evidence of both is
 //   R(A) + e(B | A) − ½ u² − ½ · 1 % · 2 R(A) + ln p,
 // where ½ u² is the unknown model error of the space (hypothesis_space.h), and the next term is
 // what the error of A's model adds to it: a later diagnosis of the model with A would subtract the
-// same. p = 2 for two effects, either of which may be found first; for a nuisance it is the prior
-// probability that there is one. Combinations that gain nothing are left out, unless they were
+// same. p = 2 for two different effects, either of which may be found first, and 1 for one effect
+// twice; for a nuisance it is the prior probability that there is one. Combinations that gain nothing are left out, unless they were
 // fitted.
 //
 // e(B | A) is that of a fit of both, if there is one, else of first order; an effect with a

@@ -25,22 +25,16 @@ double LogPrior(Kind kind) {
   return 0;
 }
 
-// What a hypothesis says is missing: its effects or, where it has none, its nuisances. Rivals that
-// only share the nuisances beside an effect have nothing in common.
+// What a hypothesis says is missing, every name once: its effects or, where it has none, its
+// nuisances. Rivals that only share the nuisances beside an effect have nothing in common.
 std::vector<std::string> WithoutNuisancesBeside(const std::vector<HypothesisProbability>& posterior,
                                                 const HypothesisProbability& one) {
-  std::vector<std::string> names = one.names;
-  if (one.kind != Kind::kNuisance)
-    std::erase_if(names, [&](const std::string& name) { return IsNuisance(posterior, name); });
+  std::vector<std::string> names;
+  for (const std::string& name : one.names)
+    if ((one.kind == Kind::kNuisance || !IsNuisance(posterior, name)) &&
+        std::count(names.begin(), names.end(), name) == 0)
+      names.push_back(name);
   return names;
-}
-
-// Every name once, in the order in which they first appear.
-std::vector<std::string> DistinctNames(const std::vector<std::string>& names) {
-  std::vector<std::string> distinct;
-  for (const std::string& name : names)
-    if (std::count(distinct.begin(), distinct.end(), name) == 0) distinct.push_back(name);
-  return distinct;
 }
 
 }  // namespace
@@ -75,7 +69,13 @@ void MergeRepeated(std::vector<HypothesisProbability>* posterior) {
     const auto same = std::find_if(merged.begin(), merged.end(),
                                    [&](const auto& other) { return IsRepeated(one, other); });
     if (same == merged.end()) {
-      one.names = DistinctNames(one.names);
+      // The two effects of a pair may be one effect twice.
+      const size_t effects = one.kind == Kind::kPair ? 2 : 0;
+      std::vector<std::string> names(one.names.begin(), one.names.begin() + effects);
+      for (size_t k = effects; k < one.names.size(); ++k)
+        if (std::count(names.begin(), names.end(), one.names[k]) == 0)
+          names.push_back(one.names[k]);
+      one.names = std::move(names);
       merged.push_back(std::move(one));
     } else if (one.probability > 0) {
       // Hypotheses of one kind have one prior, so that their Bayes factors add up likewise.

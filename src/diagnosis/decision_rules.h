@@ -40,7 +40,7 @@ void SetPosterior(std::vector<HypothesisProbability>* hypotheses);
 bool IsRepeated(const HypothesisProbability& a, const HypothesisProbability& b);
 
 // Merges the repeated hypotheses of a sorted posterior: adds their probabilities and their Bayes
-// factors, and leaves every name in them once.
+// factors, and leaves every name in them once, but for an effect that is a pair with itself.
 void MergeRepeated(std::vector<HypothesisProbability>* posterior);
 
 // Whether `name` is a nuisance of one of the hypotheses.

@@ -25,7 +25,6 @@ std::vector<std::string> EffectsOf(const std::vector<HypothesisProbability>& all
   if (one.kind != Kind::kPair) return {one.names.front()};
   std::vector<std::string> effects = one.names;
   std::erase_if(effects, [&](const std::string& name) { return IsNuisance(all, name); });
-  effects.resize(2, effects.front());  // a record has the name of an effect at two places once
   std::sort(effects.begin(), effects.end());
   return effects;
 }
@@ -49,7 +48,10 @@ std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis) {
       continue;
     }
     std::string title = ShortTitle(diagnosis, effects.front());
-    if (effects.size() == 2) title += " together with " + ShortTitle(diagnosis, effects.back());
+    if (effects.size() == 2)
+      title += effects.front() == effects.back()
+                   ? ", twice"
+                   : " together with " + ShortTitle(diagnosis, effects.back());
     rivals.push_back({name, title, all[k].probability, 0, std::move(effects)});
   }
   std::stable_sort(rivals.begin(), rivals.end(), [](const PlannedRival& a, const PlannedRival& b) {

@@ -22,7 +22,8 @@ inline constexpr double kStatedProbability = 0.95;
 struct HypothesisProbability {
   enum class Kind { kNothing, kEffect, kNuisance, kPair };
   Kind kind = Kind::kNothing;
-  // Empty for "nothing", two effects for a pair. Nuisances beside an effect stand behind it.
+  // Empty for "nothing", two effects for a pair, or one effect twice. Nuisances beside an effect
+  // stand behind it.
   std::vector<std::string> names;
   EffectFamily family = EffectFamily::kOther;  // of an effect
   // Evidence as in record/diagnosis_record.h, variants summed; of effects, less the evidence that

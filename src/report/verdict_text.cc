@@ -94,8 +94,17 @@ struct ReasonSentence {
   }
 };
 
+// An effect that a hypothesis contains two times stands in its names two times.
 std::string NamesOf(const std::vector<std::string>& names) {
-  return names.empty() ? "nothing" : EnumerationText(names);
+  if (names.empty()) return "nothing";
+  std::vector<std::string> phrases;
+  for (const std::string& name : names) {
+    if (std::count(phrases.begin(), phrases.end(), name) > 0)
+      *std::find(phrases.begin(), phrases.end(), name) += " twice";
+    else
+      phrases.push_back(name);
+  }
+  return EnumerationText(phrases);
 }
 
 // The probabilities at both levels: of families, and of their members.

@@ -104,6 +104,7 @@ void CountReliability(const FinishedTrial& finished, TrialRates* rates) {
         one.kind == HypothesisProbability::Kind::kPair)
       std::erase_if(names, [](const std::string& name) { return FindEntry(name) == nullptr; });
     std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());  // one effect twice
     statements[names] += one.probability;
   }
   for (const auto& [names, probability] : statements)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "diagnosis/decision.h"
@@ -118,6 +119,35 @@ TEST(Decide, PairsNoTwoElasticityLaws) {
   input.baseline = synthetic.With(left - 12 * synthetic.Of("neo_hookean") - fibres);
   input.refits.front().space = synthetic.With(left - fibres);
   EXPECT_THAT(Decide(input).names, UnorderedElementsAre("neo_hookean", "fibres"));
+}
+
+// One branch leaves what a second one, with another relaxation time, explains.
+TEST(Decide, NamesAnEffectThatIsMissingTwice) {
+  for (const char* effect : {"viscoelastic_branch", "stiffness_damping"}) {
+    SyntheticSpace synthetic;
+    const double unit = 1 / std::sqrt(static_cast<double>(SyntheticSpace::kRows));
+    synthetic.Add(HypothesisKind::kEffect, effect, unit * SyntheticSpace::Noise(31));
+    const Eigen::VectorXd noise = SyntheticSpace::Noise(13);
+    DecisionInput input = InputOf(synthetic, noise - 14 * synthetic.Of(effect));
+    const Eigen::VectorXd left = noise - 9 * synthetic.Of(effect);
+    input.refits.push_back({effect, 70, synthetic.With(left)});
+    const Decision decision = Decide(input);
+    const HypothesisProbability& best = decision.record.probabilities.front();
+    if (effect == std::string("stiffness_damping")) {  // of which a model has one
+      EXPECT_EQ(decision.verdict, Verdict::kNotInLibrary);
+      EXPECT_EQ(best.kind, Kind::kEffect);
+      continue;
+    }
+    EXPECT_EQ(decision.verdict, Verdict::kMissing);
+    EXPECT_THAT(decision.names, ElementsAre(effect));
+    EXPECT_EQ(best.kind, Kind::kPair);
+    EXPECT_THAT(best.names, ElementsAre(effect, effect));
+    // The fit of both replaces first order; a pair that is fitted in vain is none.
+    input.pairs.push_back({effect, effect, 30, synthetic.With(noise)});
+    EXPECT_EQ(Decide(input).record.probabilities.front().kind, Kind::kPair);
+    input.pairs.front().predicts = false;
+    EXPECT_EQ(Decide(input).verdict, Verdict::kNotInLibrary);
+  }
 }
 
 // The second effect of a pair must gain more than the error that the model of the first one may

@@ -206,6 +206,33 @@ TEST_F(LoadedBar, TriesASupportOnEachSide) {
   EXPECT_GT(support->score.evidence, 20);
 }
 
+// Four states of one bar tell as much in recordings of one frame each as in one recording, because
+// the markers stay where they are on the bar.
+TEST_F(LoadedBar, TellsAsMuchInRecordingsOfOneFrame) {
+  const PredictionStudy all = Record({BedBelow()});
+  PredictionStudy together = all, apart = all;
+  together.recordings.front().fit_until = 20;
+  together.recordings.front().frames = {0, 2, 4, 11};
+  apart.recordings.clear();
+  for (const int frame : together.recordings.front().frames) {
+    PredictedRecording& one = apart.recordings.emplace_back(together.recordings.front());
+    one.frames = {frame};
+    one.name = fmt::format("frame {}", frame);
+  }
+  const TetMesh mesh = BarMesh({7, 1, 1}, 2);
+  const auto evidence = [&](PredictionStudy* study) {
+    const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, study, &progress_);
+    EXPECT_TRUE(fit.calibration.usable) << fit.calibration.message;
+    const CalibrationProblem problem(*study, mesh);
+    return RankEffects(problem, fit.calibration.parameters, &progress_, {}, {})
+        .Find("elastic_support")
+        ->score.evidence;
+  };
+  const double in_one = evidence(&together);
+  EXPECT_GT(in_one, 10);
+  EXPECT_NEAR(evidence(&apart), in_one, 0.05 * in_one);  // errors of the clock and others differ
+}
+
 // A strain without stress, which the moduli of the model do not change: both are found.
 TEST_F(LoadedBar, RecoversASwellingAndPoissonsRatio) {
   PredictionStudy study = Record({MakeEffect("swelling", {{"strain", 0.03}})},

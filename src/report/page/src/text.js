@@ -44,8 +44,10 @@ export const KEYBOARD_HELP = 'Arrow keys turn the view, shift with an arrow key 
 export const sentence = (text) => String(text).split(/`([^`]{1,200})`/).map((part, k) => (k % 2 ? h('code', {}, part) : part));
 
 // "a", "a and b", "a, b and c".
-export const namesOf = (names) => {
-  if (!names?.length) return 'nothing';
+// A hypothesis names an effect two times if it contains two of it.
+export const namesOf = (all) => {
+  if (!all?.length) return 'nothing';
+  const names = [...new Set(all)].map((name) => (all.filter((other) => other === name).length > 1 ? `${name} twice` : name));
   return names.length === 1 ? names[0] : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
 };
 
