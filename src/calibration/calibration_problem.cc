@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/linear_misfit.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"

@@ -17,42 +17,12 @@
 #include <vector>
 
 #include "analysis/measurement_errors.h"
-#include "analysis/series_noise.h"
+#include "calibration/linear_misfit.h"
 #include "fit/calibration.h"
 #include "prediction/prediction_study.h"
 #include "prediction/recording_model.h"
 
 namespace lacuna {
-
-// The misfit of the fitted recordings over all of their frames, held-out frames included, and its
-// derivatives at some parameter values. The rows of the recordings follow one another; they are in
-// m, those of reactions in N or N m, and not whitened.
-struct LinearisedMisfit {
-  // The points of one recording, or one of its measured reactions; the latter follow the former.
-  struct Part {
-    size_t recording = 0;            // its index in the study
-    std::optional<size_t> reaction;  // its index in RecordingModel::Reactions(); none for points
-    Eigen::Index first_row = 0;
-    SeriesLayout layout;
-    MeasurementErrors errors;
-    std::vector<char> fitted;  // for each frame: 1 where it was fitted, 0 where held out
-    Eigen::VectorXd speed;     // d(predicted)/dt, one entry per row, m/s or N/s
-    double sign = 1;           // ReactionMisfit::sign
-    // What the prediction was compared with, one entry per frame; empty for a reaction.
-    std::vector<Observed> observed;
-    Eigen::VectorXd held;  // 3n, m: the equilibrium before the motion
-
-    bool IsOfPoints() const { return !reaction.has_value(); }
-  };
-  // The points of a recording (CHECKed to be there).
-  const Part& PointsOf(size_t recording) const;
-
-  bool usable = false;
-  std::string message;
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd jacobian;  // columns: the problem's parameters, then the directions asked for
-  std::vector<Part> parts;
-};
 
 struct LineariseOptions {
   bool with_jacobian = false;

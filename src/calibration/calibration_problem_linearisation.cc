@@ -1,8 +1,6 @@
 // The misfit of a calibration problem over all frames, and its derivatives.
 #include <fmt/format.h>
-#include <glog/logging.h>
 
-#include <algorithm>
 #include <iterator>
 
 #include "calibration/calibration_problem.h"
@@ -35,14 +33,6 @@ std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
 }
 
 }  // namespace
-
-const LinearisedMisfit::Part& LinearisedMisfit::PointsOf(size_t recording) const {
-  const auto found = std::find_if(parts.begin(), parts.end(), [&](const Part& part) {
-    return part.recording == recording && part.IsOfPoints();
-  });
-  CHECK(found != parts.end());
-  return *found;
-}
 
 CalibrationProblem::PredictedRows CalibrationProblem::RowsOf(
     const PredictedFrames& predicted, const Eigen::VectorXd& values,

@@ -1,11 +1,22 @@
 #include "calibration/linear_misfit.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "analysis/series_noise.h"
 
 namespace lacuna {
+
+const LinearisedMisfit::Part& LinearisedMisfit::PointsOf(size_t recording) const {
+  const auto found = std::find_if(parts.begin(), parts.end(), [&](const Part& part) {
+    return part.recording == recording && part.IsOfPoints();
+  });
+  CHECK(found != parts.end());
+  return *found;
+}
+
 std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& parameters,
                                      const Eigen::VectorXd& values) {
   std::vector<LinearPrior> priors;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "analysis/linear_evidence.h"
+#include "calibration/calibration_problem.h"
 #include "calibration/linear_misfit.h"
 #include "calibration/listed_nodes.h"
 #include "calibration/parameter_response.h"

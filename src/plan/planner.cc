@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "analysis/linear_evidence.h"
+#include "calibration/calibration_problem.h"
 #include "calibration/linear_misfit.h"
 #include "core/error.h"
 #include "core/parallel.h"

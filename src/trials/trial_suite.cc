@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include "calibration/calibration_problem.h"
 #include "calibration/linear_misfit.h"
 #include "core/atomic_file.h"
 #include "core/random_bits.h"
