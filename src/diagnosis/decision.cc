@@ -123,15 +123,16 @@ std::vector<HypothesisProbability> SinglePosterior(const DecisionInput& input,
 struct Weighed {
   explicit Weighed(const DecisionInput& input);
 
-  // The space and the columns with which the most probable hypothesis is tested.
-  TestedSpace Tested(const DecisionInput& input) const;
+  // The most probable part of what was merged into one hypothesis of `posterior`.
+  const HypothesisProbability& PartOf(const HypothesisProbability& merged) const;
+  // The space and the columns with which such a part is tested.
+  TestedSpace Tested(const DecisionInput& input, const HypothesisProbability& part) const;
 
   ProjectedHypotheses beside_nothing;
   std::vector<NamedEvidence> first_order;
   std::vector<Combination> combinations;
   std::vector<HypothesisProbability> distinguished;  // before repeated ones were merged
   std::vector<HypothesisProbability> posterior;
-  HypothesisProbability best;  // the most probable part of what was merged into the first one
 };
 
 Weighed::Weighed(const DecisionInput& input)
@@ -143,14 +144,17 @@ Weighed::Weighed(const DecisionInput& input)
   SetPosterior(&distinguished);
   posterior = distinguished;
   MergeRepeated(&posterior);
-  best = *std::find_if(distinguished.begin(), distinguished.end(),
-                       [&](const auto& one) { return IsRepeated(one, posterior.front()); });
 }
 
-TestedSpace Weighed::Tested(const DecisionInput& input) const {
-  TestedSpace tested = TestedSpaceOf(input, first_order, best);
+const HypothesisProbability& Weighed::PartOf(const HypothesisProbability& merged) const {
+  return *std::find_if(distinguished.begin(), distinguished.end(),
+                       [&](const auto& one) { return IsRepeated(one, merged); });
+}
+
+TestedSpace Weighed::Tested(const DecisionInput& input, const HypothesisProbability& part) const {
+  TestedSpace tested = TestedSpaceOf(input, first_order, part);
   for (const Combination& both : combinations)
-    if (both.hypothesis.names == best.names && both.hypothesis.evidence == best.evidence)
+    if (both.hypothesis.names == part.names && both.hypothesis.evidence == part.evidence)
       tested = both.tested;
   return tested;
 }
@@ -222,6 +226,24 @@ RecordedAdequacy RecordOf(const AdequacyTest& test, double removed,
   return adequacy;
 }
 
+bool IsEnough(const RecordedAdequacy& adequacy) {
+  return adequacy.is_adequate || adequacy.is_tolerated;
+}
+
+// Tests a hypothesis of the posterior, with the nuisances that explain what it leaves.
+RecordedAdequacy AdequacyOf(const DecisionInput& input, const Weighed& weighed,
+                            const HypothesisProbability& hypothesis) {
+  const HypothesisProbability& part = weighed.PartOf(hypothesis);
+  TestedSpace tested = weighed.Tested(input, part);
+  std::vector<std::string> beside = hypothesis.names.empty() ? input.adopted : hypothesis.names;
+  if (part.kind == Kind::kEffect || part.kind == Kind::kPair)
+    for (const std::string& nuisance : TakeNuisancesBeside(&tested))
+      if (std::count(beside.begin(), beside.end(), nuisance) == 0) beside.push_back(nuisance);
+  const AdequacyTest test =
+      TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
+  return RecordOf(test, 2 * part.evidence + input.explained_misfit, std::move(beside));
+}
+
 }  // namespace
 
 EffectFamily FamilyOf(const std::map<std::string, EffectFamily>& families,
@@ -254,23 +276,21 @@ Decision Decide(const DecisionInput& input) {
   Decision decision;
   DecisionRecord& record = decision.record;
   record.probabilities = weighed.posterior;
-  const HypothesisProbability &first = record.probabilities.front(), &best = weighed.best;
-  TestedSpace tested = weighed.Tested(input);
-  std::vector<std::string> beside = first.names.empty() ? input.adopted : first.names;
-  if (best.kind == Kind::kEffect || best.kind == Kind::kPair)
-    for (const std::string& nuisance : TakeNuisancesBeside(&tested))
-      if (std::count(beside.begin(), beside.end(), nuisance) == 0) beside.push_back(nuisance);
-  const AdequacyTest test =
-      TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
-  record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit, std::move(beside));
-  record.chance = ChanceOf(input, weighed.beside_nothing);
-
   const Naming naming = NameFrom(record.probabilities);
   decision.names = naming.names;
+  record.adequacy = AdequacyOf(input, weighed, record.probabilities.front());
+  // Nothing unknown is left if any of the hypotheses that are kept explains everything.
+  for (const size_t k : naming.kept) {
+    if (IsEnough(record.adequacy)) break;
+    if (RecordedAdequacy other = AdequacyOf(input, weighed, record.probabilities[k]);
+        IsEnough(other))
+      record.adequacy = std::move(other);
+  }
+  record.chance = ChanceOf(input, weighed.beside_nothing);
   const bool is_measurement = std::all_of(naming.kept.begin(), naming.kept.end(), [&](size_t k) {
     return record.probabilities[k].kind == Kind::kNuisance;
   });
-  if (!record.adequacy.is_adequate && !record.adequacy.is_tolerated) {
+  if (!IsEnough(record.adequacy)) {
     decision.verdict = Verdict::kNotInLibrary;
   } else if (naming.level == Naming::Level::kNothing) {
     decision.verdict = input.is_anything_detectable ? Verdict::kAdequate : Verdict::kNoPower;

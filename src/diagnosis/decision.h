@@ -4,10 +4,10 @@
 //    (decision_rules.h): of a refit where there is one, else to first order.
 // 2. Combinations are added (combinations.h): pairs of effects, fitted or to first order, and
 //    effects with a nuisance beside them, to first order.
-// 3. The most probable hypothesis is tested against its own residual (adequacy.h). If it leaves
-//    more than noise, something unknown is left.
-// 4. The effects that the hypotheses that reach kStatedProbability have in common are stated, else
-//    their set.
+// 3. The hypotheses that reach kStatedProbability are tested against their own residuals, the most
+//    probable one first, until one leaves no more than noise (adequacy.h). If each of them leaves
+//    more, something unknown is left.
+// 4. The effects that they have in common are stated, else their set.
 //
 // Pure: the result depends on the input alone.
 #ifndef LACUNA_DIAGNOSIS_DECISION_H_
@@ -30,8 +30,8 @@ struct Decision {
 
 Decision Decide(const DecisionInput& input);
 
-// DecisionRecord::probabilities of Decide() alone, the most probable hypothesis first. The tests of
-// the most probable one and the simulations, which take most of the time of Decide(), are left out.
+// DecisionRecord::probabilities of Decide() alone, the most probable hypothesis first. The tests
+// and the simulations, which take most of the time of Decide(), are left out.
 std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input);
 
 // The family of an effect; kOther where it has none.

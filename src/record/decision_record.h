@@ -41,8 +41,9 @@ struct HypothesisProbability {
   }
 };
 
-// Whether the most probable hypothesis leaves what noise leaves: tail probabilities under noise
-// alone (diagnosis/adequacy.h).
+// Whether a hypothesis leaves what noise leaves: tail probabilities under noise alone
+// (diagnosis/adequacy.h). It is the most probable one or, where that leaves more, the most probable
+// one of the others that are kept and leave no more.
 struct RecordedAdequacy {
   std::vector<std::string> beside;        // the hypothesis that was tested; empty: nothing
   double p_unknown_force = kNotMeasured;  // not measured where no recording shows such a force

@@ -150,6 +150,33 @@ TEST(Decide, NamesAnEffectThatIsMissingTwice) {
   }
 }
 
+// What the most probable hypothesis leaves, another one that is kept may explain.
+TEST(Decide, FindsNothingUnknownWhereAKeptHypothesisIsEnough) {
+  SyntheticSpace synthetic;
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(13);
+  const Eigen::VectorXd fibres = 6 * synthetic.Of("fibres");
+  DecisionInput input =
+      InputOf(synthetic, noise - synthetic.Of("gravity") * Eigen::Vector3d(12, -9, 8) - fibres);
+  input.refits.push_back({"gravity", 800, synthetic.With(noise - fibres)});
+  const auto with_gain = [&](double gain) {
+    input.pairs = {{"gravity", "fibres", gain, synthetic.With(noise)}};
+    return Decide(input);
+  };
+  // The pair must gain one per cent of what gravity explains, ln 4 for the choice among effects and
+  // more than the difference of the priors: it is kept, but less probable than gravity alone.
+  const Decision kept = with_gain(9.5);
+  EXPECT_EQ(kept.record.probabilities[0].kind, Kind::kEffect);
+  EXPECT_EQ(kept.record.probabilities[1].kind, Kind::kPair);
+  EXPECT_GT(kept.record.probabilities[1].probability, 0.05);
+  EXPECT_EQ(kept.verdict, Verdict::kMissing);
+  EXPECT_THAT(kept.names, ElementsAre("gravity"));
+  EXPECT_THAT(kept.record.adequacy.beside, UnorderedElementsAre("gravity", "fibres"));
+  // A pair that is not kept does not count.
+  const Decision dropped = with_gain(2);
+  EXPECT_EQ(dropped.verdict, Verdict::kNotInLibrary);
+  EXPECT_THAT(dropped.record.adequacy.beside, ElementsAre("gravity"));
+}
+
 // The second effect of a pair must gain more than the error that the model of the first one may
 // have: as much as if the first one had been added, and the model diagnosed again.
 TEST(Decide, AsksOfAPairWhatTheNextRoundWouldAskOfItsSecondEffect) {
