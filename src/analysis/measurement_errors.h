@@ -34,6 +34,7 @@ class CommonErrors {
   CommonErrors(Eigen::Index components, Eigen::Index places);
 
   // Adds the frames `among` (one flag per frame) of a recording, whose points are at these places.
+  // The deviation s of a place must be the same in all recordings.
   void Add(const Eigen::VectorXd& residual, const std::vector<double>& count,
            const MeasurementErrors& errors, const std::vector<char>& among,
            const std::vector<Eigen::Matrix3d>& deformation, const std::vector<int>& place_of_point);

@@ -59,6 +59,7 @@ std::vector<std::vector<OffsetMember>> MembersOfOffsets(
   std::map<int, size_t> known;  // from the number of an offset to its place in `offsets`
   for (const NoisyRecording& recording : recordings) {
     const SeriesLayout& layout = *recording.layout;
+    if (layout.times.empty()) continue;
     const int width = layout.SeriesPerOffset();
     CHECK_EQ(layout.series % width, 0);
     CHECK(layout.offset_ids.empty() || std::ssize(layout.offset_ids) == layout.series / width);
@@ -92,6 +93,7 @@ void WhitenTogether(const std::vector<OffsetMember>& members, const Eigen::Matri
     const SeriesNoise& noise = member.recording->noise;
     const std::vector<char>* frames = member.recording->frames;
     CHECK_EQ(layout.SeriesPerOffset(), width);
+    CHECK_EQ(noise.offset_deviation, members.front().recording->noise.offset_deviation);
     const Eigen::Index frame_count = member.FrameCount();
     for (int c = 0; c < width; ++c, next += frame_count) {
       std::vector<double> count(layout.times.size());
@@ -142,6 +144,7 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows,
     CHECK_GT(recording.noise.deviation, 0);
   }
   Eigen::MatrixXd white = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());
+  if (rows.cols() == 0) return white;
   for (const std::vector<OffsetMember>& members : MembersOfOffsets(recordings))
     WhitenTogether(members, rows, &white);
   return white;

@@ -7,8 +7,8 @@
 // known only to within s. The offset moves with the material: if the deformation gradient F_t at
 // the marker is given, the three coordinates have the covariance s² F_t F_uᵀ between the frames t
 // and u. A marker that several recordings show has one offset in all of them, so that t and u may
-// be frames of different recordings. A value that is the mean of n measurements has σ/√n in place
-// of σ.
+// be frames of different recordings, between which the first part is 0. A value that is the mean of
+// n measurements has σ/√n in place of σ.
 //
 // The rows of a recording are ordered by frame, with all series of a frame together.
 #ifndef LACUNA_ANALYSIS_SERIES_NOISE_H_
@@ -27,9 +27,9 @@ struct SeriesLayout {
   // (series/3) × frames: F at the point whose coordinates are three consecutive series. Empty: the
   // offset is constant and the series are independent.
   std::vector<Eigen::Matrix3d> deformation;
-  // For each offset, that of a point with `deformation` or of a series without, a number: equal
-  // numbers in several recordings stand for the same offset. Empty: the offsets belong to this
-  // recording alone.
+  // One number for each offset, i.e. for each point with `deformation`, or for each series without.
+  // Recordings in which the same number stands have that offset in common. Empty: none of the
+  // offsets is that of another recording.
   std::vector<int> offset_ids = {};
 
   Eigen::Index Rows() const {
@@ -61,8 +61,8 @@ struct NoisyRecording {
   const std::vector<char>* frames = nullptr;  // as above; null: all
 };
 // The same for the rows of several recordings, which share the offsets with equal `offset_ids`.
-// Rows of no recording become 0. CHECKs that series with a common offset deform alike, i.e. all of
-// them with a deformation gradient or none.
+// Rows of no recording become 0. CHECKs that series with a common offset have one s and deform
+// alike, i.e. all of them with a deformation gradient or none.
 Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows,
                          const std::vector<NoisyRecording>& recordings);
 

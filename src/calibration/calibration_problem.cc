@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -80,7 +81,6 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
     double& largest = item.ShowsScans() ? of_scans : of_markers;
     largest = std::max(largest, EstimateRecordingNoise(item, item.FittedFrames()));
   }
-  NumberPlaces();
   for (CalibratedParameter& parameter : parameters_)
     if (std::isnan(parameter.prior_mean)) parameter.prior_mean = parameter.start;
   estimates_noise_ = !has_scans && (noise_ == 0 || study.noise_is_estimated);
@@ -89,6 +89,7 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
     throw InputError(fmt::format("{}: noise: cannot be estimated ({}); give it",
                                  study.file.string(), WhyWithoutNoise(models_)));
   }
+  NumberPlaces();
   if (!has_scans) return;
   scan_noise_ = study.scan.noise > 0 ? study.scan.noise : of_scans;
   if (!(scan_noise_ > 0)) {
@@ -100,15 +101,30 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
 }
 
 void CalibrationProblem::NumberPlaces() {
-  for (size_t r = 0; r < models_.size(); ++r) {
+  constexpr double kSamePlace = 1e-9;  // m: places that were written in two units may be rounded
+  struct KnownPlace {
+    int id;
+    Eigen::Vector3d place;
+    double deviation;
+  };
+  std::multimap<std::string, KnownPlace> known;  // by the marker's name
+  for (const RecordingModel& model : models_) {
     std::vector<int>& ids = place_ids_.emplace_back();
-    if (models_[r].recording().ShowsScans()) continue;
-    for (size_t other = 0; other < r && ids.empty(); ++other)
-      if (const auto same = SameMarkers(models_[r].recording(), models_[other].recording()))
-        for (const int marker : *same)
-          ids.push_back(place_ids_[other][static_cast<size_t>(marker)]);
-    if (!ids.empty()) continue;
-    for (int marker = 0; marker < models_[r].PointCount(); ++marker) ids.push_back(place_count_++);
+    const PredictedRecording& item = model.recording();
+    if (item.ShowsScans()) continue;
+    const Markers& markers = item.recording.markers;
+    const double deviation = ErrorsOf(model).common;
+    for (size_t m = 0; m < markers.names.size(); ++m) {
+      const Eigen::Vector3d place = markers.places.col(static_cast<Eigen::Index>(m));
+      const auto [first, last] = known.equal_range(markers.names[m]);
+      auto same = std::find_if(first, last, [&](const auto& other) {
+        return other.second.deviation == deviation &&
+               (other.second.place - place).norm() <= kSamePlace;
+      });
+      if (same == last)
+        same = known.emplace(markers.names[m], KnownPlace{place_count_++, place, deviation});
+      ids.push_back(same->second.id);
+    }
   }
 }
 
@@ -154,33 +170,47 @@ Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
 }
 
 bool CalibrationProblem::ShareMarkers(size_t a, size_t b) const {
-  // All markers are the same, or none.
-  return !place_ids_[a].empty() &&
-         std::count(place_ids_[b].begin(), place_ids_[b].end(), place_ids_[a].front()) > 0;
+  const std::vector<int>&first = place_ids_[a], &second = place_ids_[b];
+  return std::find_first_of(first.begin(), first.end(), second.begin(), second.end()) !=
+         first.end();
 }
 
-void CalibrationProblem::AddTo(CommonErrors* places, size_t recording, const Misfit& misfit) const {
+PlaceErrors CalibrationProblem::NoPlaceErrors() const {
+  return {CommonErrors(3, place_count_), std::vector<char>(static_cast<size_t>(place_count_))};
+}
+
+void CalibrationProblem::AddTo(PlaceErrors* places, size_t recording, const Misfit& misfit) const {
   std::vector<char> fitted;
   for (const int frame : misfit.frames)
     fitted.push_back(models_[recording].recording().IsFitted(frame));
-  places->Add(misfit.residual, misfit.count, ErrorsOf(models_[recording]), fitted,
-              misfit.deformation, place_ids_[recording]);
+  places->errors.Add(misfit.residual, misfit.count, ErrorsOf(models_[recording]), fitted,
+                     misfit.deformation, place_ids_[recording]);
+  for (const int place : place_ids_[recording]) places->is_told[static_cast<size_t>(place)] = 1;
+}
+
+bool CalibrationProblem::AreTold(const PlaceErrors& places, size_t recording) const {
+  const std::vector<int>& ids = place_ids_[recording];
+  return !ids.empty() && std::all_of(ids.begin(), ids.end(), [&](int place) {
+    return places.is_told[static_cast<size_t>(place)] != 0;
+  });
 }
 
 std::optional<Eigen::MatrixXd> CalibrationProblem::PlacesFromFitted(
     size_t recording, const Eigen::VectorXd& values) const {
-  CommonErrors places = PlaceErrors();
-  bool is_told = false;
-  for (const size_t r : FittedRecordings()) {
-    if (!ShareMarkers(recording, r)) continue;
-    const RecordingModel fitted = ModelAt(r, values);
-    const Misfit misfit = fitted.Predict(fitted.recording().FittedFrames(), NuisanceOf(r, values));
-    if (!misfit.summary.IsUsable()) continue;
-    AddTo(&places, r, misfit);
-    is_told = true;
-  }
-  if (!is_told) return std::nullopt;
-  return places.Mean()(Eigen::all, place_ids_[recording]);
+  std::vector<size_t> sources;
+  for (const size_t r : FittedRecordings())
+    if (ShareMarkers(recording, r)) sources.push_back(r);
+  std::vector<Misfit> misfits(sources.size());
+  ParallelFor(static_cast<int64_t>(sources.size()), 1, [&](int64_t k) {
+    const RecordingModel fitted = ModelAt(sources[static_cast<size_t>(k)], values);
+    misfits[static_cast<size_t>(k)] = fitted.Predict(
+        fitted.recording().FittedFrames(), NuisanceOf(sources[static_cast<size_t>(k)], values));
+  });
+  PlaceErrors places = NoPlaceErrors();
+  for (size_t k = 0; k < sources.size(); ++k)
+    if (misfits[k].summary.IsUsable()) AddTo(&places, sources[k], misfits[k]);
+  if (!AreTold(places, recording)) return std::nullopt;
+  return places.errors.Mean()(Eigen::all, place_ids_[recording]);
 }
 
 std::vector<MisfitDirection> CalibrationProblem::DirectionsFor(
@@ -224,7 +254,7 @@ ResidualEvaluation CalibrationProblem::Predict(const Eigen::VectorXd& values, bo
   ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t k) {
     const size_t r = fitted[static_cast<size_t>(k)];
     const PredictedRecording& item = models_[r].recording();
-    PredictedFrames early{
+    FrameRequest early{
         r,
         item.FittedFrames(),
         {seek ? nullptr : &known.correspondences[r], &known.equilibria[r], known.reach_factor},
@@ -243,7 +273,7 @@ ResidualEvaluation CalibrationProblem::Predict(const Eigen::VectorXd& values, bo
     if (part.held.size() > 0) known.equilibria[part.recording] = std::move(part.held);
     if (seek) known.correspondences[part.recording] = std::move(part.observed);
   }
-  return FittedFrames(all);
+  return FittedEvaluation(all);
 }
 
 std::optional<CalibrationProblem::ScanDistance> CalibrationProblem::DistanceOfScans(

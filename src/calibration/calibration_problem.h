@@ -44,6 +44,13 @@ inline constexpr double kLocalMinimumSuspected = 2;
 // not matter then.
 inline constexpr double kFarFromTruth = 3;
 
+// What fitted recordings tell about the errors of the places of their markers, by the numbers of
+// CalibrationProblem::PlaceIds().
+struct PlaceErrors {
+  CommonErrors errors;
+  std::vector<char> is_told;  // for each place, whether a recording that was added shows it
+};
+
 class CalibrationProblem {
  public:
   // Throws InputError when a region is empty or a scan does not show the object. The study must
@@ -84,13 +91,16 @@ class CalibrationProblem {
   // of another one are fitted to its first tenth, with the model at `values`.
   Eigen::VectorXd NuisanceOf(size_t recording, const Eigen::VectorXd& values) const;
   // The numbers of the places of a recording's markers. Markers of several recordings with the same
-  // names and places, in any order, sit at the same places of the object and have the same numbers,
-  // so that the errors of these places are the same in all of them. Empty for scans.
+  // name and place, which is known equally well in them, sit at one place of the object. They have
+  // the same number, and the same error of that place. Empty for scans.
   const std::vector<int>& PlaceIds(size_t recording) const { return place_ids_[recording]; }
+  // Whether two recordings show a marker at the same place.
   bool ShareMarkers(size_t a, size_t b) const;
-  // Estimates the errors of the markers' places from fitted recordings.
-  CommonErrors PlaceErrors() const { return {3, place_count_}; }
-  void AddTo(CommonErrors* places, size_t recording, const Misfit& misfit) const;
+  // The errors of the places before any recording has been added; adds those that the fitted frames
+  // of a recording show; whether recordings were added that show all places of this one.
+  PlaceErrors NoPlaceErrors() const;
+  void AddTo(PlaceErrors* places, size_t recording, const Misfit& misfit) const;
+  bool AreTold(const PlaceErrors& places, size_t recording) const;
 
   // What the predictions of a fit reuse from earlier ones.
   struct FitMemory {
@@ -147,7 +157,7 @@ class CalibrationProblem {
   void NumberPlaces();
   std::vector<size_t> FittedRecordings() const;
   // The rows of one recording; recordings are predicted side by side, and joined.
-  struct PredictedFrames {
+  struct FrameRequest {
     size_t recording = 0;
     std::vector<int> frames;
     PredictionHints hints = {};
@@ -159,7 +169,7 @@ class CalibrationProblem {
     Eigen::VectorXd residual;
     Eigen::MatrixXd jacobian;
   };
-  PredictedRows RowsOf(const PredictedFrames& predicted, const Eigen::VectorXd& values,
+  PredictedRows RowsOf(const FrameRequest& request, const Eigen::VectorXd& values,
                        const LineariseOptions& options) const;
   static LinearisedMisfit Joined(std::vector<PredictedRows> recordings);
 

@@ -35,21 +35,21 @@ std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
 }  // namespace
 
 CalibrationProblem::PredictedRows CalibrationProblem::RowsOf(
-    const PredictedFrames& predicted, const Eigen::VectorXd& values,
+    const FrameRequest& request, const Eigen::VectorXd& values,
     const LineariseOptions& options) const {
-  const size_t recording = predicted.recording;
+  const size_t recording = request.recording;
   const RecordingModel model = ModelAt(recording, values);
   const PredictedRecording& item = model.recording();
   // The clock comes last: the derivative by its delay is minus the speed.
   std::vector<MisfitDirection> wanted;
   if (options.with_jacobian) wanted = DirectionsFor(model, options.directions);
   wanted.push_back({MisfitDirection::Kind::kClock});
-  Misfit misfit = model.Predict(predicted.frames, NuisanceOf(recording, values), wanted,
-                                predicted.hints, options.on_frame);
+  Misfit misfit = model.Predict(request.frames, NuisanceOf(recording, values), wanted,
+                                request.hints, options.on_frame);
   PredictedRows rows;
   if (!misfit.summary.IsUsable())
     rows.message = misfit.summary.message;
-  else if (predicted.needs_matches)
+  else if (request.needs_matches)
     rows.message = Mismatch(model, misfit);
   if (!rows.message.empty()) {
     rows.message = item.name + ": " + rows.message;
@@ -134,7 +134,7 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values,
   std::vector<PredictedRows> recordings(fitted.size());
   ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t at) {
     const size_t k = static_cast<size_t>(at);
-    PredictedFrames all{fitted[k], models_[fitted[k]].recording().frames};
+    FrameRequest all{fitted[k], models_[fitted[k]].recording().frames};
     if (options.correspondences != nullptr)
       all.hints.observed = &options.correspondences->PointsOf(fitted[k]).observed;
     if (options.near != nullptr && options.near->usable)

@@ -125,28 +125,28 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const std::function<void()>& on_frame) {
   const size_t count = problem.models().size();
   std::vector<RecordingMisfit> all(count);
-  std::vector<size_t> tellers, others;
+  std::vector<size_t> fitted, others;
   for (size_t r = 0; r < count; ++r)
-    (problem.models()[r].recording().fitted ? tellers : others).push_back(r);
+    (problem.models()[r].recording().fitted ? fitted : others).push_back(r);
   const auto for_each = [](const std::vector<size_t>& some,
                            const std::function<void(size_t)>& what) {
     ParallelFor(static_cast<int64_t>(some.size()), 1,
                 [&](int64_t k) { what(some[static_cast<size_t>(k)]); });
   };
-  for_each(tellers, [&](size_t r) {
+  for_each(fitted, [&](size_t r) {
     all[r] = PredictMisfit(problem, values, r, std::nullopt, known, on_frame);
   });
-  // Fitted recordings tell where the markers are, all of them together.
-  CommonErrors told = problem.PlaceErrors();
+  // Fitted recordings tell together where the markers are.
+  PlaceErrors told = problem.NoPlaceErrors();
   std::vector<char> is_told(count);
-  for (const size_t r : tellers) {
+  for (const size_t r : fitted) {
     if (problem.PlaceIds(r).empty() || !all[r].misfit.summary.IsUsable()) continue;
+    all[r].has_own_places = !problem.AreTold(told, r);
     problem.AddTo(&told, r, all[r].misfit);
-    all[r].has_own_places = !is_told[r];
-    for (size_t other = 0; other < count; ++other)
-      is_told[other] = is_told[other] || problem.ShareMarkers(other, r);
+    is_told[r] = 1;
   }
-  const Eigen::MatrixXd of_places = told.Mean();
+  for (const size_t r : others) is_told[r] = problem.AreTold(told, r);
+  const Eigen::MatrixXd of_places = told.errors.Mean();
   const auto places = [&](size_t r) -> std::optional<Eigen::MatrixXd> {
     if (!is_told[r]) return std::nullopt;
     return of_places(Eigen::all, problem.PlaceIds(r));

@@ -21,7 +21,7 @@ struct RecordingMisfit {
   Eigen::VectorXd nuisance;        // in the order of RecordingModel::nuisances
   std::vector<char> fitted;        // for each frame of the misfit
   Eigen::MatrixXd place_offset;    // components × points, m: the errors of the points' places
-  bool has_own_places = true;      // false: an earlier recording has the same markers
+  bool has_own_places = true;      // false: other recordings, listed before or fitted, tell them
   MisfitMeasure in_fit, held_out;  // held out: later frames, or the whole recording
   std::vector<FittedReaction> reactions;  // one per reading of RecordingModel::Reactions()
 };

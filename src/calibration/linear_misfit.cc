@@ -70,7 +70,7 @@ Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& 
   return kept;
 }
 
-ResidualEvaluation FittedFrames(const LinearisedMisfit& misfit) {
+ResidualEvaluation FittedEvaluation(const LinearisedMisfit& misfit) {
   ResidualEvaluation prediction;
   prediction.usable = misfit.usable;
   prediction.message = misfit.message;

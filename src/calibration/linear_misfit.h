@@ -71,7 +71,7 @@ Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit
 // The rows of the fitted frames, in the order of `rows`.
 Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit);
 // What a fit sees of a misfit: the whitened rows of its fitted frames.
-ResidualEvaluation FittedFrames(const LinearisedMisfit& misfit);
+ResidualEvaluation FittedEvaluation(const LinearisedMisfit& misfit);
 
 // The noise level with which hypotheses are compared.
 struct NoiseLevel {

@@ -203,7 +203,7 @@ FitStart ExtendedProblem::StartAtFixedSize(const std::string& stage) const {
 
 FirstStep ExtendedProblem::FirstStepFrom(const Eigen::VectorXd& at,
                                          const LinearisedMisfit& misfit) const {
-  const ResidualEvaluation there = FittedFrames(misfit);
+  const ResidualEvaluation there = FittedEvaluation(misfit);
   const std::vector<CalibratedParameter> parameters = ParametersFrom(at, /*holds_effect=*/false);
   Eigen::MatrixXd columns = nuisances_.OfDerivatives(there.jacobian.leftCols(at.size()));
   DeriveByFreeValues(parameters, at, &columns);
@@ -293,7 +293,7 @@ ResidualEvaluation ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with
     // The last such prediction becomes the fit's misfit.
     memory->latest = with_.Linearise(at, {.with_jacobian = true, .near = &baseline_.misfit});
     memory->of_latest = at;
-    prediction = FittedFrames(memory->latest);
+    prediction = FittedEvaluation(memory->latest);
   } else {
     memory->of_problem.correspondences.clear();  // each prediction finds its own
     prediction = with_.Predict(at, with_jacobian, kInfinity, &memory->of_problem);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "diagnosis/thresholds.h"
@@ -18,19 +20,13 @@ namespace {
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
 // Predicted minus measured positions of one recording: 3 × (points·frames), frames outermost; NaN
-// where a point was not observed. The error of a point that is the same in all frames is removed,
-// as it belongs to the point's place on the object.
-Eigen::Matrix3Xd Displacements(const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part) {
+// where a point was not observed. The errors of the points' `places` on the object are removed.
+Eigen::Matrix3Xd Displacements(const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part,
+                               const Eigen::MatrixXd& places) {
   const Eigen::Index frames = static_cast<Eigen::Index>(part.observed.size());
   const Eigen::Index points = part.observed.front().count.size();
   const Eigen::Index components = part.layout.series / points;
-  std::vector<double> count;
-  for (const Observed& seen : part.observed)
-    count.insert(count.end(), seen.count.begin(), seen.count.end());
   const Eigen::VectorXd residual = misfit.residual.segment(part.first_row, part.layout.Rows());
-  const Eigen::MatrixXd places =
-      CommonError(residual, count, static_cast<int>(points), part.errors,
-                  std::vector<char>(part.observed.size(), 1), part.layout.deformation);
   Eigen::Matrix3Xd displacements =
       Eigen::Matrix3Xd::Constant(3, points * frames, std::numeric_limits<double>::quiet_NaN());
   for (Eigen::Index f = 0; f < frames; ++f) {
@@ -49,6 +45,38 @@ Eigen::Matrix3Xd Displacements(const LinearisedMisfit& misfit, const LinearisedM
     }
   }
   return displacements;
+}
+
+// The errors of the places of each part's points, components × points: what is the same in all
+// frames that show a point, of all recordings with its marker.
+std::vector<Eigen::MatrixXd> PlaceErrorsOf(const std::vector<const LinearisedMisfit::Part*>& parts,
+                                           const LinearisedMisfit& misfit,
+                                           const CalibrationProblem& problem) {
+  const auto add_to = [&](CommonErrors* errors, const LinearisedMisfit::Part& part,
+                          const std::vector<int>& places) {
+    std::vector<double> count;
+    for (const Observed& seen : part.observed)
+      count.insert(count.end(), seen.count.begin(), seen.count.end());
+    errors->Add(misfit.residual.segment(part.first_row, part.layout.Rows()), count, part.errors,
+                std::vector<char>(part.observed.size(), 1), part.layout.deformation, places);
+  };
+  CommonErrors of_markers = problem.NoPlaceErrors().errors;
+  for (const LinearisedMisfit::Part* part : parts)
+    if (!part->layout.offset_ids.empty()) add_to(&of_markers, *part, part->layout.offset_ids);
+  const Eigen::MatrixXd common = of_markers.Mean();
+  std::vector<Eigen::MatrixXd> places;
+  for (const LinearisedMisfit::Part* part : parts) {
+    if (!part->layout.offset_ids.empty()) {
+      places.emplace_back(common(Eigen::all, part->layout.offset_ids));
+      continue;
+    }
+    std::vector<int> own(static_cast<size_t>(part->observed.front().count.size()));
+    std::iota(own.begin(), own.end(), 0);
+    CommonErrors errors(part->layout.series / std::ssize(own), std::ssize(own));
+    add_to(&errors, *part, own);
+    places.push_back(errors.Mean());
+  }
+  return places;
 }
 
 // How far the predicted body and the object reach in some directions.
@@ -155,9 +183,10 @@ std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
   std::vector<Eigen::Matrix3Xd> displacements;
   Eigen::Vector3d largest = Eigen::Vector3d::Zero();
   double noise = 0;
-  for (const LinearisedMisfit::Part* part : parts) {
-    displacements.push_back(Displacements(misfit, *part));
-    noise = std::max(noise, part->errors.noise);
+  const std::vector<Eigen::MatrixXd> places = PlaceErrorsOf(parts, misfit, problem);
+  for (size_t p = 0; p < parts.size(); ++p) {
+    displacements.push_back(Displacements(misfit, *parts[p], places[p]));
+    noise = std::max(noise, parts[p]->errors.noise);
     for (const auto& displacement : displacements.back().colwise())
       if (displacement.norm() > largest.norm()) largest = displacement;
   }

@@ -22,13 +22,13 @@ bool SharesMarkers(const CalibrationProblem& problem, size_t r) {
 
 // The errors of the markers' places as columns: for each place, in each of its rows the deformation
 // gradient of the frame. Recordings with the same markers have the same columns.
-struct PlaceErrors {
+struct PlaceColumns {
   Eigen::MatrixXd columns;
   std::vector<LinearPrior> priors;
 };
 
-PlaceErrors ErrorsOfPlaces(const CalibrationProblem& problem, LinearisedMisfit* misfit) {
-  PlaceErrors errors;
+PlaceColumns ColumnsOfPlaces(const CalibrationProblem& problem, LinearisedMisfit* misfit) {
+  PlaceColumns errors;
   std::map<int, Eigen::Index> first_column;  // of each place
   errors.columns.resize(misfit->residual.size(), 0);
   for (LinearisedMisfit::Part& part : misfit->parts) {
@@ -91,7 +91,7 @@ AgreementRecord CompareRecordings(const CalibrationProblem& problem, const Eigen
   independent.residual = misfit.residual;
   independent.parts = misfit.parts;
   for (LinearisedMisfit::Part& part : independent.parts) part.layout.offset_ids.clear();
-  const PlaceErrors places = ErrorsOfPlaces(problem, &independent);
+  const PlaceColumns places = ColumnsOfPlaces(problem, &independent);
   const auto whiten = [&](const Eigen::MatrixXd& rows) {
     return WhitenedRows(rows, independent,
                         {.correlation_time = noise.correlation_time, .fitted_only = true});

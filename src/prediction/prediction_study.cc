@@ -54,28 +54,6 @@ std::vector<int> PredictedRecording::FittedFrames() const {
   return chosen;
 }
 
-std::optional<std::vector<int>> SameMarkers(const PredictedRecording& a,
-                                            const PredictedRecording& b) {
-  constexpr double kSamePlace = 1e-9;  // m: places that were written in two units may be rounded
-  const Markers &first = a.recording.markers, &second = b.recording.markers;
-  if (a.ShowsScans() || b.ShowsScans() || first.names.size() != second.names.size())
-    return std::nullopt;
-  CHECK_EQ(first.places.cols(), static_cast<Eigen::Index>(first.names.size()));
-  CHECK_EQ(second.places.cols(), static_cast<Eigen::Index>(second.names.size()));
-  std::map<std::string, int> in_second;  // names are unique
-  for (size_t m = 0; m < second.names.size(); ++m) in_second[second.names[m]] = static_cast<int>(m);
-  std::vector<int> same;
-  for (size_t m = 0; m < first.names.size(); ++m) {
-    const auto found = in_second.find(first.names[m]);
-    if (found == in_second.end() ||
-        !((first.places.col(static_cast<Eigen::Index>(m)) - second.places.col(found->second))
-              .norm() <= kSamePlace))
-      return std::nullopt;
-    same.push_back(found->second);
-  }
-  return same;
-}
-
 std::vector<Region*> RegionsIn(PredictedRecording* item) {
   std::vector<Region*> regions = RegionsIn(&item->recording.object);
   if (item->hold) regions.push_back(&item->hold->region);

@@ -64,10 +64,6 @@ struct PredictedRecording {
   // The time, s, until which the object is at rest.
   double StartTime() const { return hold ? hold->release : recording.times[frames.front()]; }
 };
-// Where both recordings show markers of the same names at the same places on the object, in any
-// order: for each marker of `a` the number of that marker in `b`.
-std::optional<std::vector<int>> SameMarkers(const PredictedRecording& a,
-                                            const PredictedRecording& b);
 // The regions of its object and of its hold.
 std::vector<Region*> RegionsIn(PredictedRecording* item);
 

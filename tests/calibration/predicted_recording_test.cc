@@ -1,6 +1,7 @@
 // Recordings and frames that are only predicted: a fit does not use them, but they use what it has
 // found.
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "calibration/held_bar_fit.h"
 #include "calibration/held_out_misfit.h"
 #include "record/csv_table.h"
+#include "scan/mesh_frames.h"
 #include "support/replace_in_file.h"
 #include "support/silent_fit.h"
 #include "support/temporary_folder.h"
@@ -66,6 +68,32 @@ void ReverseMarkers(const std::filesystem::path& folder) {
   for (size_t m = table.size() / 3; m > 0; --m)
     reversed.insert(reversed.end(), {table[3 * m - 2], table[3 * m - 1], table[3 * m]});
   WriteCsv(reversed, folder / "markers.csv");
+}
+
+TEST(CalibrationProblem, NumbersThePlacesOfMarkers) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  WriteBarRecording(folder / "other", FilmHeldBar({}));
+  ReverseMarkers(folder / "other");
+  PredictionStudy study = ReadBarStudy(folder.Path(), WithOtherRecording(""));
+  const TetMesh mesh = BarMesh({3, 1, 1}, 2);
+  const auto ids = [&](size_t recording) {
+    return CalibrationProblem(study, mesh).PlaceIds(recording);
+  };
+  EXPECT_THAT(ids(0), testing::ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
+  EXPECT_THAT(ids(1), testing::ElementsAre(7, 6, 5, 4, 3, 2, 1, 0));
+  // A marker at another place, and one with another name.
+  study.recordings[1].recording.markers.places(0, 0) += 1e-3;
+  study.recordings[1].recording.markers.names[2] = "new";
+  EXPECT_THAT(ids(1), testing::ElementsAre(8, 6, 9, 4, 3, 2, 1, 0));
+  EXPECT_TRUE(CalibrationProblem(study, mesh).ShareMarkers(0, 1));
+  // Places that are read off the first frame are known better than those that were measured.
+  MeshFrames tracked;
+  tracked.tracked = true;
+  study.recordings[1].recording.frames = tracked;
+  study.place_deviation_is_given = false;
+  EXPECT_THAT(ids(1), testing::ElementsAre(8, 9, 10, 11, 12, 13, 14, 15));
+  EXPECT_FALSE(CalibrationProblem(study, mesh).ShareMarkers(0, 1));
 }
 
 // The errors of the markers' places are common to recordings: two with the same residuals r tell

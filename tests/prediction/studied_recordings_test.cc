@@ -223,21 +223,5 @@ TEST(PredictedRecording, FitsItsUsedFramesUntilATime) {
   EXPECT_FALSE(item.IsFitted(0));
 }
 
-TEST(PredictedRecording, HasTheSameMarkersOnlyWithTheSameNamesAndPlaces) {
-  PredictedRecording one;
-  one.recording.markers.names = {"a", "b"};
-  one.recording.markers.places = Eigen::Matrix3Xd::Identity(3, 2);
-  PredictedRecording other = one;
-  EXPECT_THAT(*SameMarkers(one, other), ElementsAre(0, 1));
-  other.recording.markers.places(0, 1) = 1e-3;
-  EXPECT_FALSE(SameMarkers(one, other));
-  other = one;
-  other.recording.markers.names = {"b", "a"};
-  EXPECT_FALSE(SameMarkers(one, other));
-  // In another order, as the columns of a file may be.
-  other.recording.markers.places = one.recording.markers.places.rowwise().reverse().eval();
-  EXPECT_THAT(*SameMarkers(one, other), ElementsAre(1, 0));
-}
-
 }  // namespace
 }  // namespace lacuna
