@@ -154,7 +154,7 @@ TEST(Decide, NamesAnEffectThatIsMissingTwice) {
 TEST(Decide, FindsNothingUnknownWhereAKeptHypothesisIsEnough) {
   SyntheticSpace synthetic;
   const Eigen::VectorXd noise = SyntheticSpace::Noise(13);
-  const Eigen::VectorXd fibres = 6 * synthetic.Of("fibres");
+  const Eigen::VectorXd fibres = 8 * synthetic.Of("fibres");
   DecisionInput input =
       InputOf(synthetic, noise - synthetic.Of("gravity") * Eigen::Vector3d(12, -9, 8) - fibres);
   input.refits.push_back({"gravity", 800, synthetic.With(noise - fibres)});

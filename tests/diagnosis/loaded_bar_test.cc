@@ -206,9 +206,10 @@ TEST_F(LoadedBar, TriesASupportOnEachSide) {
   EXPECT_GT(support->score.evidence, 20);
 }
 
-// Eight states of one bar tell as much in recordings of one frame each as in one recording, because
-// the markers stay where they are on the bar.
-TEST_F(LoadedBar, TellsAsMuchInRecordingsOfOneFrame) {
+// Eight states of one bar tell nearly as much in recordings of one frame each as in one recording,
+// because the markers stay where they are on the bar. (Each recording has nuisances of its own.)
+// Markers that were put on anew have other names, and errors of their own, which hide the bed.
+TEST_F(LoadedBar, TellsMoreWhereRecordingsShareMarkers) {
   const PredictionStudy all = Record({BedBelow()});
   PredictionStudy together = all, apart = all;
   together.recordings.front().fit_until = 20;
@@ -219,6 +220,9 @@ TEST_F(LoadedBar, TellsAsMuchInRecordingsOfOneFrame) {
     one.frames = {frame};
     one.name = fmt::format("frame {}", frame);
   }
+  PredictionStudy renamed = apart;
+  for (PredictedRecording& one : renamed.recordings)
+    for (std::string& marker : one.recording.markers.names) marker += " in " + one.name;
   const TetMesh mesh = BarMesh({7, 1, 1}, 2);
   const auto evidence = [&](PredictionStudy* study) {
     const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, study, &progress_);
@@ -229,8 +233,9 @@ TEST_F(LoadedBar, TellsAsMuchInRecordingsOfOneFrame) {
         ->score.evidence;
   };
   const double in_one = evidence(&together);
-  EXPECT_GT(in_one, 5);
-  EXPECT_NEAR(evidence(&apart), in_one, 0.05 * in_one);  // errors of the clock and others differ
+  EXPECT_GT(in_one, 30);
+  EXPECT_GT(evidence(&apart), 0.6 * in_one);
+  EXPECT_LT(evidence(&renamed), 0.3 * in_one);
 }
 
 // A strain without stress, which the moduli of the model do not change: both are found.
