@@ -280,10 +280,9 @@ Decision Decide(const DecisionInput& input) {
   decision.names = naming.names;
   record.adequacy = AdequacyOf(input, weighed, record.probabilities.front());
   // Nothing unknown is left if any of the hypotheses that are kept explains everything.
-  for (const size_t k : naming.kept) {
-    if (IsEnough(record.adequacy)) break;
-    if (RecordedAdequacy other = AdequacyOf(input, weighed, record.probabilities[k]);
-        IsEnough(other))
+  for (size_t k = 1; k < naming.kept.size() && !IsEnough(record.adequacy); ++k) {
+    const HypothesisProbability& next = record.probabilities[naming.kept[k]];
+    if (RecordedAdequacy other = AdequacyOf(input, weighed, next); IsEnough(other))
       record.adequacy = std::move(other);
   }
   record.chance = ChanceOf(input, weighed.beside_nothing);

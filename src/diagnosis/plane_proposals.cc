@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "diagnosis/thresholds.h"
@@ -52,30 +50,32 @@ Eigen::Matrix3Xd Displacements(const LinearisedMisfit& misfit, const LinearisedM
 std::vector<Eigen::MatrixXd> PlaceErrorsOf(const std::vector<const LinearisedMisfit::Part*>& parts,
                                            const LinearisedMisfit& misfit,
                                            const CalibrationProblem& problem) {
-  const auto add_to = [&](CommonErrors* errors, const LinearisedMisfit::Part& part,
-                          const std::vector<int>& places) {
+  const auto residual = [&](const LinearisedMisfit::Part& part) -> Eigen::VectorXd {
+    return misfit.residual.segment(part.first_row, part.layout.Rows());
+  };
+  const auto counts = [](const LinearisedMisfit::Part& part) {
     std::vector<double> count;
     for (const Observed& seen : part.observed)
       count.insert(count.end(), seen.count.begin(), seen.count.end());
-    errors->Add(misfit.residual.segment(part.first_row, part.layout.Rows()), count, part.errors,
-                std::vector<char>(part.observed.size(), 1), part.layout.deformation, places);
+    return count;
+  };
+  const auto all_frames = [](const LinearisedMisfit::Part& part) {
+    return std::vector<char>(part.observed.size(), 1);
   };
   CommonErrors of_markers = problem.NoPlaceErrors().errors;
   for (const LinearisedMisfit::Part* part : parts)
-    if (!part->layout.offset_ids.empty()) add_to(&of_markers, *part, part->layout.offset_ids);
+    if (!part->layout.offset_ids.empty())
+      of_markers.Add(residual(*part), counts(*part), part->errors, all_frames(*part),
+                     part->layout.deformation, part->layout.offset_ids);
   const Eigen::MatrixXd common = of_markers.Mean();
   std::vector<Eigen::MatrixXd> places;
-  for (const LinearisedMisfit::Part* part : parts) {
-    if (!part->layout.offset_ids.empty()) {
+  for (const LinearisedMisfit::Part* part : parts)
+    if (!part->layout.offset_ids.empty())
       places.emplace_back(common(Eigen::all, part->layout.offset_ids));
-      continue;
-    }
-    std::vector<int> own(static_cast<size_t>(part->observed.front().count.size()));
-    std::iota(own.begin(), own.end(), 0);
-    CommonErrors errors(part->layout.series / std::ssize(own), std::ssize(own));
-    add_to(&errors, *part, own);
-    places.push_back(errors.Mean());
-  }
+    else
+      places.push_back(CommonError(residual(*part), counts(*part),
+                                   static_cast<int>(part->observed.front().count.size()),
+                                   part->errors, all_frames(*part)));
   return places;
 }
 

@@ -1,6 +1,7 @@
 #include "diagnosis/recording_agreement.h"
 
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -28,19 +29,21 @@ struct PlaceColumns {
 };
 
 PlaceColumns ColumnsOfPlaces(const CalibrationProblem& problem, LinearisedMisfit* misfit) {
+  const auto shares = [&](const LinearisedMisfit::Part& part) {
+    return part.IsOfPoints() && part.errors.common != 0 && SharesMarkers(problem, part.recording);
+  };
   PlaceColumns errors;
   std::map<int, Eigen::Index> first_column;  // of each place
-  errors.columns.resize(misfit->residual.size(), 0);
+  for (const LinearisedMisfit::Part& part : misfit->parts) {
+    if (!shares(part)) continue;
+    for (const int place : problem.PlaceIds(part.recording))
+      if (first_column.try_emplace(place, 3 * std::ssize(first_column)).second)
+        errors.priors.insert(errors.priors.end(), 3, {0, part.errors.common, false});
+  }
+  errors.columns.setZero(misfit->residual.size(), std::ssize(errors.priors));
   for (LinearisedMisfit::Part& part : misfit->parts) {
-    if (!part.IsOfPoints() || part.errors.common == 0 || !SharesMarkers(problem, part.recording))
-      continue;
+    if (!shares(part)) continue;
     const std::vector<int>& places = problem.PlaceIds(part.recording);
-    for (const int place : places) {
-      if (!first_column.try_emplace(place, errors.columns.cols()).second) continue;
-      errors.columns.conservativeResize(Eigen::NoChange, errors.columns.cols() + 3);
-      errors.columns.rightCols<3>().setZero();
-      errors.priors.insert(errors.priors.end(), 3, {0, part.errors.common, false});
-    }
     for (size_t at = 0; at < part.layout.deformation.size(); ++at) {
       if (part.layout.count[3 * at] == 0) continue;
       const Eigen::Index row = part.first_row + 3 * static_cast<Eigen::Index>(at);

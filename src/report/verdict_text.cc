@@ -99,8 +99,9 @@ std::string NamesOf(const std::vector<std::string>& names) {
   if (names.empty()) return "nothing";
   std::vector<std::string> phrases;
   for (const std::string& name : names) {
-    if (std::count(phrases.begin(), phrases.end(), name) > 0)
-      *std::find(phrases.begin(), phrases.end(), name) += " twice";
+    const auto first = std::find(phrases.begin(), phrases.end(), name);
+    if (first != phrases.end())
+      *first += " twice";
     else
       phrases.push_back(name);
   }
