@@ -34,7 +34,8 @@ before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'report_page_'));
   browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+    // Only the 3D view is drawn by the (emulated) graphics processor.
+    args: ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader'],
   });
 });
 
