@@ -66,6 +66,8 @@ struct NuisanceCard {
   // The nuisance changes natural frequencies, which a linear column follows for a short time only.
   // First order therefore underrates it, also in a model that is fitted with it.
   bool outgrows_first_order = false;
+  // A nuisance of each recording is tried where this many frames are used or more.
+  int least_frames = 3;
   // A shorter time step reduces the nuisance: the diagnosis may start again with one.
   bool shrinks_with_time_step = false;
   NuisanceTrial trial = {};

@@ -23,6 +23,7 @@ NuisanceEntry GripComplianceNuisance();
 NuisanceEntry ClockNuisance();
 NuisanceEntry TimeJitterNuisance();
 NuisanceEntry BadFrameNuisance();
+NuisanceEntry RegistrationNuisance();
 NuisanceEntry RegistrationDriftNuisance();
 
 const std::vector<NuisanceEntry>& NuisanceCatalogue() {
@@ -42,6 +43,7 @@ const std::vector<NuisanceEntry>& NuisanceCatalogue() {
       ClockNuisance(),
       TimeJitterNuisance(),
       BadFrameNuisance(),
+      RegistrationNuisance(),
       RegistrationDriftNuisance(),
   };
   return entries;
@@ -151,10 +153,12 @@ std::vector<NuisanceCandidate> RecordingNuisances(const CalibrationProblem& prob
   std::vector<NuisanceCandidate> candidates;
   for (const LinearisedMisfit::Part& part : misfit.parts) {
     const std::vector<double>& times = part.layout.times;
-    if (!part.IsOfPoints() || times.size() < 3) continue;
-    const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    if (!part.IsOfPoints() || times.empty()) continue;
+    const double spacing =
+        (times.back() - times.front()) / std::max(1.0, static_cast<double>(times.size()) - 1);
     const RecordingContext context{problem, misfit, part, whitened_residual, spacing, centre};
     ForEach<RecordingNuisance>([&](const NuisanceCard& card, RecordingNuisance make) {
+      if (std::ssize(times) < card.least_frames) return;
       if (auto candidate = make(context)) Add(card, *std::move(candidate), &candidates);
     });
   }

@@ -31,13 +31,13 @@ struct NuisanceContext {
   const OtherMesh* other_mesh = nullptr;  // as in MakeOtherMesh(); null: unknown
 };
 
-// One recording of that model, with three frames or more.
+// One recording of that model, with NuisanceCard::least_frames or more.
 struct RecordingContext {
   const CalibrationProblem& problem;
   const LinearisedMisfit& misfit;
   const LinearisedMisfit::Part& part;        // the rows of its points
   const Eigen::VectorXd& whitened_residual;  // all rows, in σ
-  double spacing = 0;                        // s, mean time between frames
+  double spacing = 0;                        // s, mean time between frames; of one frame 0
   Eigen::Vector3d centre;                    // m, of the object at rest
 
   const std::string& Name() const { return problem.models()[part.recording].recording().name; }

@@ -87,10 +87,9 @@ std::string NuisanceSentence(const ReportedModel& model) {
   std::vector<std::string> whats;
   for (const std::string& name : diagnosis.effects) whats.push_back(TitleOf(diagnosis, name));
   std::string advice;
-  for (const RecordedNuisance& nuisance : diagnosis.nuisances)
-    if (!diagnosis.effects.empty() && nuisance.name == diagnosis.effects.front() &&
-        !nuisance.advice.empty() && advice.empty())
-      advice = " What to do: " + nuisance.advice + ".";
+  const RecordedNuisance* first =
+      diagnosis.effects.empty() ? nullptr : StrongestNuisance(diagnosis, diagnosis.effects.front());
+  if (first != nullptr && !first->advice.empty()) advice = " What to do: " + first->advice + ".";
   if (const RecordedNuisance* more = ExplainsMoreThanNamed(diagnosis))
     advice += fmt::format(
         " But first: {}. In the model as it is, {} explains more of the error, {:.0f} %, of which "

@@ -222,11 +222,19 @@ std::vector<std::string> NamingSentences(const DiagnosisRecord& diagnosis) {
 
 }  // namespace
 
+const RecordedNuisance* StrongestNuisance(const DiagnosisRecord& diagnosis,
+                                          const std::string& name) {
+  const RecordedNuisance* strongest = nullptr;
+  for (const RecordedNuisance& nuisance : diagnosis.nuisances)
+    if (nuisance.name == name && (strongest == nullptr || nuisance.evidence > strongest->evidence))
+      strongest = &nuisance;
+  return strongest;
+}
+
 std::string TitleOf(const DiagnosisRecord& diagnosis, const std::string& name) {
   if (const RecordedEffect* effect = FindEffect(diagnosis, name)) return effect->title;
-  for (const RecordedNuisance& nuisance : diagnosis.nuisances)
-    if (nuisance.name == name) return nuisance.what;
-  return name;
+  const RecordedNuisance* nuisance = StrongestNuisance(diagnosis, name);
+  return nuisance != nullptr ? nuisance->what : name;
 }
 
 std::string VerdictWithNames(const Conclusion& conclusion) {

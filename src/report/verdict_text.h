@@ -16,6 +16,11 @@ namespace lacuna {
 // The verdict with the names it gives, e.g. "ambiguous {drag, mass_damping}".
 std::string VerdictWithNames(const Conclusion& conclusion);
 
+// The nuisance that a name alone means: of those that several recordings or grips have, the one
+// with the most evidence. Null: there is none.
+const RecordedNuisance* StrongestNuisance(const DiagnosisRecord& diagnosis,
+                                          const std::string& name);
+
 // The title of an effect, what a nuisance is, or the name itself where the record has neither.
 std::string TitleOf(const DiagnosisRecord& diagnosis, const std::string& name);
 

@@ -83,6 +83,24 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
   }
 }
 
+// The cameras were set up anew in the middle of the experiment.
+TEST_F(LoadedBar, StandsElsewhereInAnotherRecording) {
+  PredictionStudy study = Record({});
+  PredictedRecording& first = study.recordings.front();
+  PredictedRecording second = first;
+  first.name = "before";
+  first.frames = {0, 1, 2, 3, 4, 5, 6, 7};
+  second.name = "after";
+  second.frames = {8, 9, 10, 11, 12, 13, 14, 15};
+  second.fit_until = 20;
+  for (Eigen::Matrix3Xd& markers : second.recording.markers.positions)
+    markers.colwise() += Eigen::Vector3d(6e-4, -4e-4, 5e-4);
+  study.recordings.push_back(second);
+  const Diagnosis diagnosis = FitAndDiagnose(&study);
+  EXPECT_THAT(diagnosis.effects, testing::Contains("registration"))
+      << ExplainVerdict(RecordOf(diagnosis));
+}
+
 // The bar bends so far that the response to its load is not linear. To first order a wrong load
 // explains less than it does, and an effect that is fitted would be taken for it.
 TEST_F(LoadedBar, BendsAsUnderTheLoadThatItReallyBears) {

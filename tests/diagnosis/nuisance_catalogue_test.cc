@@ -87,6 +87,7 @@ TEST(NuisanceCatalogue, MakesTheNuisancesOfARecordingFromItsFrames) {
     made[nuisance.card.name] = nuisance;
   }
   EXPECT_FALSE(made.contains("clock")) << "the study fits the clock";
+  EXPECT_FALSE(made.contains("registration")) << "there is one recording";
   // The errors of all frames together are that of the clock.
   const Eigen::VectorXd all_late = made.at("time_jitter").columns.rowwise().sum();
   EXPECT_LT((all_late - part.speed).norm(), 1e-12 * part.speed.norm());
@@ -100,6 +101,37 @@ TEST(NuisanceCatalogue, MakesTheNuisancesOfARecordingFromItsFrames) {
   const Eigen::MatrixXd& drift = made.at("registration_drift").columns;
   EXPECT_EQ(drift.topRows(part.layout.series).norm(), 0);
   EXPECT_DOUBLE_EQ(drift(drift.rows() - 3, 0), 1);
+}
+
+// Of two recordings, one of them a single frame and one with a fitted registration.
+TEST(NuisanceCatalogue, ShiftsOneOfSeveralRecordings) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  PredictionStudy study = ReadBarStudy(folder.Path());
+  PredictedRecording& other = study.recordings.emplace_back(study.recordings.front());
+  other.name = "other";
+  other.frames = {4};
+  const auto shifted = [&] {
+    const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 1));
+    const LinearisedMisfit misfit = problem.Linearise(problem.Start());
+    EXPECT_TRUE(misfit.usable) << misfit.message;
+    std::map<std::string, NuisanceCandidate> made;
+    for (const NuisanceCandidate& nuisance : RecordingNuisances(problem, misfit, misfit.residual)) {
+      if (nuisance.card.name != "registration") continue;
+      made[nuisance.what] = nuisance;
+      EXPECT_EQ(nuisance.columns.cols(), 6);
+    }
+    if (const auto found = made.find("the coordinate system of other"); found != made.end()) {
+      const LinearisedMisfit::Part& part = misfit.PointsOf(1);
+      EXPECT_EQ(found->second.columns.topRows(part.first_row).norm(), 0);
+      EXPECT_EQ(found->second.columns(part.first_row + 1, 1), 1);
+    }
+    return made.size();
+  };
+  EXPECT_EQ(shifted(), 2u);
+  study.recordings.front().shift_deviation = 1e-3;
+  study.recordings.front().turn_deviation = 0.01;
+  EXPECT_EQ(shifted(), 1u);
 }
 
 // A mass that is removed from a bar that has none cannot be predicted, and a sheet has no other

@@ -175,6 +175,21 @@ TEST(HeadlineVerdict, ANuisanceOfEveryModelThatExplainsMoreComesFirst) {
   EXPECT_THAT(VerdictSentence(model), EndsWith("What to do: measure it."));
 }
 
+// A name means the recording, or the grip, that has the most evidence.
+TEST(HeadlineVerdict, TellsOfTheRecordingThatIsMeant) {
+  ReportedModel model = ModelWithError(8.7e-4, 5.1);
+  model.diagnosis = DiagnosisNaming(Verdict::kNuisance, {"registration"});
+  std::vector<RecordedNuisance>& nuisances = model.diagnosis->nuisances;
+  nuisances = {{"registration", "the coordinate system of A", "advice for A"},
+               {"registration", "the coordinate system of B", "advice for B"},
+               {"registration", "the coordinate system of C", "advice for C"}};
+  nuisances[0].evidence = -20;
+  nuisances[1].evidence = 900;
+  nuisances[2].evidence = 30;
+  EXPECT_THAT(VerdictSentence(model), HasSubstr("the coordinate system of B"));
+  EXPECT_THAT(VerdictSentence(model), EndsWith("What to do: advice for B."));
+}
+
 TEST(HeadlineVerdict, AnEffectThatExplainsAPartIsNotCalledWhatIsMissing) {
   ReportedModel model = ModelWithError(8.7e-4, 5.1);
   model.diagnosis = DiagnosisNaming(Verdict::kNotInLibrary, {"drag"});
