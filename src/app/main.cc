@@ -3,8 +3,10 @@
 #include <glog/logging.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,15 +47,18 @@ std::string UnknownCommand(const CLI::App& app, const std::string& given) {
                      lacuna::Suggestion(given, known));
 }
 
-// Why a command cannot use the first of the arguments that nothing has taken.
-std::string UnexpectedArgument(const CLI::App& app, const std::vector<std::string>& remaining) {
-  const std::string& given = remaining.front();
+// Why a command cannot use an argument that nothing has taken. `arguments`: all that were given.
+// (The value of an option of the program may have been taken for an argument of the command.)
+std::string UnexpectedArgument(const CLI::App& app, const std::string& given,
+                               const std::vector<std::string>& arguments) {
   const size_t equals = given.find('=');
   const CLI::Option* option = app.get_option_no_throw(given.substr(0, equals));
   if (option == nullptr)
     return fmt::format("unexpected argument \"{}\"; --help lists those that are known", given);
   const bool has_value = option->get_items_expected_min() > 0 && equals == std::string::npos;
-  const std::string value = !has_value ? "" : remaining.size() > 1 ? " " + remaining[1] : " VALUE";
+  const auto at = std::find(arguments.begin(), arguments.end(), given);
+  const bool is_last = std::distance(at, arguments.end()) < 2;
+  const std::string value = !has_value ? "" : is_last ? " VALUE" : " " + *std::next(at);
   return fmt::format("\"{0}\" must come before the command: lacuna {0}{1} {2} ...", given, value,
                      app.get_subcommands().front()->get_name());
 }
@@ -100,10 +105,10 @@ int main(int argc, char** argv) {
   lacuna::AddDocumentOption(&app);
   if (const std::optional<int> ended = lacuna::ParseCommandLine(&app, argc, argv)) return *ended;
   if (!app.remaining(true).empty()) {
-    const std::vector<std::string> remaining = app.remaining(true);
-    fmt::print(
-        stderr, "lacuna: {}\n",
-        command ? UnexpectedArgument(app, remaining) : UnknownCommand(app, remaining.front()));
+    const std::string given = app.remaining(true).front();
+    fmt::print(stderr, "lacuna: {}\n",
+               command ? UnexpectedArgument(app, given, {argv + 1, argv + argc})
+                       : UnknownCommand(app, given));
     return lacuna::kUnusableInput;
   }
   if (!command) {

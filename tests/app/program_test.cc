@@ -193,6 +193,7 @@ TEST(Lacuna, SaysThatAnOptionOfTheProgramStandsBeforeTheCommand) {
   EXPECT_EQ(ending.status, 2);
   EXPECT_THAT(ending.said,
               HasSubstr("\"--threads\" must come before the command: lacuna --threads 2 fit ..."));
+  EXPECT_THAT(Lacuna("fit --threads 2 x.yaml").said, HasSubstr("lacuna --threads 2 fit ..."));
   EXPECT_THAT(Lacuna("fit x.yaml --memory-limit=4GB").said,
               HasSubstr("lacuna --memory-limit=4GB fit ..."));
 }
