@@ -44,11 +44,8 @@ std::optional<NuisanceCandidate> Make(const RecordingContext& at) {
   candidate.what = fmt::format("the frame at {:.3f} s of {}",
                                at.part.layout.times[static_cast<size_t>(worst)], at.Name());
   candidate.selection_penalty = std::log(static_cast<double>(at.Frames()));
-  candidate.columns.resize(at.misfit.residual.size(), 6);
-  for (int axis = 0; axis < 6; ++axis)
-    candidate.columns.col(axis) = at.Column([&](Eigen::Index frame, int series) {
-      return frame == worst ? at.RigidChange(frame, series, axis) : 0.0;
-    });
+  candidate.columns =
+      at.RigidColumns([&](Eigen::Index frame) { return frame == worst ? 1.0 : 0.0; });
   candidate.priors = RigidMotionPriors();
   return candidate;
 }

@@ -188,14 +188,21 @@ Eigen::VectorXd RecordingContext::Column(
   return column;
 }
 
-double RecordingContext::RigidChange(Eigen::Index frame, int series, int axis) const {
-  const Observed& seen = part.observed[static_cast<size_t>(frame)];
-  const bool along_normal = seen.normal.cols() > 0;
-  const int point = along_normal ? series : series / 3;
-  if (seen.count[point] == 0) return 0;
-  Eigen::Vector3d motion = Eigen::Vector3d::Unit(axis % 3);
-  if (axis >= 3) motion = motion.cross(Eigen::Vector3d(seen.measured.col(point) - centre));
-  return along_normal ? motion.dot(seen.normal.col(point)) : motion[series % 3];
+Eigen::MatrixXd RecordingContext::RigidColumns(
+    const std::function<double(Eigen::Index frame)>& share) const {
+  Eigen::MatrixXd columns(misfit.residual.size(), 6);
+  for (int axis = 0; axis < 6; ++axis)
+    columns.col(axis) = Column([&](Eigen::Index frame, int series) {
+      const Observed& seen = part.observed[static_cast<size_t>(frame)];
+      const bool along_normal = seen.normal.cols() > 0;
+      const int point = along_normal ? series : series / 3;
+      if (seen.count[point] == 0) return 0.0;
+      Eigen::Vector3d motion = Eigen::Vector3d::Unit(axis % 3);
+      if (axis >= 3) motion = motion.cross(Eigen::Vector3d(seen.measured.col(point) - centre));
+      return share(frame) *
+             (along_normal ? motion.dot(seen.normal.col(point)) : motion[series % 3]);
+    });
+  return columns;
 }
 
 }  // namespace lacuna

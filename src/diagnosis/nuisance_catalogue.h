@@ -44,9 +44,9 @@ struct RecordingContext {
   Eigen::Index Frames() const { return static_cast<Eigen::Index>(part.layout.times.size()); }
   // A column with value(frame, series) in the rows of the points and 0 elsewhere.
   Eigen::VectorXd Column(const std::function<double(Eigen::Index frame, int series)>& value) const;
-  // The change of a row if the frame moves rigidly: by a shift along axis 0, 1 or 2 (per m), or a
-  // rotation about axis 3, 4 or 5 through the centre (per rad). 0 if the row was not observed.
-  double RigidChange(Eigen::Index frame, int series, int axis) const;
+  // Six columns: the frames move rigidly, each by this share of a shift along three axes (per m)
+  // and of a rotation about three axes through the centre (per rad). 0 where nothing was observed.
+  Eigen::MatrixXd RigidColumns(const std::function<double(Eigen::Index frame)>& share) const;
 };
 
 // A nuisance that cannot be simulated: without columns, with the reason, a part of a sentence.

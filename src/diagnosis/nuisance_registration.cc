@@ -32,10 +32,7 @@ std::optional<NuisanceCandidate> Make(const RecordingContext& at) {
   if (is_only_one || is_fitted) return std::nullopt;
   NuisanceCandidate candidate;
   candidate.what = "the coordinate system of " + at.Name();
-  candidate.columns.resize(at.misfit.residual.size(), 6);
-  for (int axis = 0; axis < 6; ++axis)
-    candidate.columns.col(axis) = at.Column(
-        [&](Eigen::Index frame, int series) { return at.RigidChange(frame, series, axis); });
+  candidate.columns = at.RigidColumns([](Eigen::Index) { return 1.0; });
   candidate.priors = RigidMotionPriors();
   return candidate;
 }

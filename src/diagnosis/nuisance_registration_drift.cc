@@ -22,12 +22,9 @@ std::optional<NuisanceCandidate> Make(const RecordingContext& at) {
   const double duration = times.back() - times.front();
   NuisanceCandidate candidate;
   candidate.what = "a slow drift of the coordinate system of " + at.Name();
-  candidate.columns.resize(at.misfit.residual.size(), 6);
-  for (int axis = 0; axis < 6; ++axis)
-    candidate.columns.col(axis) = at.Column([&](Eigen::Index frame, int series) {
-      return at.RigidChange(frame, series, axis) *
-             (times[static_cast<size_t>(frame)] - times.front()) / duration;
-    });
+  candidate.columns = at.RigidColumns([&](Eigen::Index frame) {
+    return (times[static_cast<size_t>(frame)] - times.front()) / duration;
+  });
   candidate.priors = RigidMotionPriors();
   return candidate;
 }
